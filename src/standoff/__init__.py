@@ -3,7 +3,7 @@
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,
 `so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`, `so.robots`,
-`so.solids`.
+`so.solids`, `so.cad`.
 """
 
 from typing import TYPE_CHECKING
@@ -14,6 +14,7 @@ from standoff.version import __version__ as __version__
 if TYPE_CHECKING:
     from standoff.bodies import Body, shapes
     from standoff.bodies.voronoi import voronoi_regions
+    from standoff.cad import read_brep, read_iges, read_step
     from standoff.control import min_gain
     from standoff.errors import BodyError, StandoffError
     from standoff.impact import time_of_impact
@@ -50,6 +51,7 @@ else:
                 "shapes",
             ),
             "standoff.bodies.voronoi": ("voronoi_regions",),
+            "standoff.cad": ("read_brep", "read_iges", "read_step"),
             "standoff.control": ("min_gain",),
             "standoff.errors": (
                 "BodyError",
@@ -88,6 +90,7 @@ else:
         modules=(
             "automaton",
             "bodies",
+            "cad",
             "control",
             "devices",
             "geometry",
@@ -135,6 +138,9 @@ __all__ = [
     "min_gain",
     "open_recording",
     "plot",
+    "read_brep",
+    "read_iges",
+    "read_step",
     "shapes",
     "time_of_impact",
     "track",

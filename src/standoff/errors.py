@@ -59,6 +59,29 @@ class BodyError(StandoffError):
         self.part = part
 
 
+class CadError(StandoffError):
+    """A CAD file, or a part of one, that can't be read; nothing of it is kept.
+
+    Parameters
+    ----------
+    message, argument, value
+        As of a `StandoffError`; the message names the file, the part and the place in it.
+    refusals : tuple of str
+        Of an assembly, each part that was refused, with the reason.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        argument: str = "",
+        value: Any = None,
+        *,
+        refusals: tuple[str, ...] = (),
+    ) -> None:
+        super().__init__(message, argument, value)
+        self.refusals = refusals
+
+
 class FormulaError(StandoffError):
     """A formula that cannot be used: the message names the place and the fix."""
 

@@ -349,6 +349,8 @@ def test_a_package_that_is_not_installed_is_told_with_its_extra(
     used = tuple(f"standoff.robots.{name}" for name in ("mujoco", "pinocchio", "urdf", module))
     for name in [name for name in sys.modules if name.startswith((*used, "standoff.casadi"))]:
         monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, package, None)
+    # its own modules too, which another test may have imported
+    for name in {package, *(name for name in sys.modules if name.startswith(f"{package}."))}:
+        monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(ModuleNotFoundError, match=rf"pip install 'standoff\[{extra}\]'"):
         importlib.import_module(f"standoff.robots.{module}")

@@ -130,31 +130,34 @@ def _collapsed_side(apex: Apex) -> Coedge:
 
 
 def _join_angles(chart: Chart, edges: Sequence[Edge]) -> None:
-    """Shift pcurves on a surface whose u is an angle by whole turns, so that they meet in u."""
-    from standoff.geometry.pcurves import Pcurve
+    """Shift pcurves on a surface whose u is an angle by whole turns, so that they meet in u.
 
+    The pieces of one entry of the loop are shifted together.
+    """
     placed: dict[int, float] = {}
-    waiting = [c for c in chart.coedges if c.edge >= 0 and edges[c.edge].first is not None]
+    entries: dict[int, list[Coedge]] = {}
+    for c in chart.coedges:
+        if c.edge >= 0 and edges[c.edge].first is not None:
+            entries.setdefault(c.entry, []).append(c)
+    waiting = list(entries.values())
     while waiting:
-        k = next((k for k, c in enumerate(waiting) if _ends(c, edges).keys() & placed.keys()), 0)
-        c = waiting.pop(k)
-        for vertex, u in _ends(c, edges).items():
+        k = next((k for k, e in enumerate(waiting) if _ends(e, edges).keys() & placed.keys()), 0)
+        entry = waiting.pop(k)
+        for vertex, u in _ends(entry, edges).items():
             if vertex in placed:
-                matrix = c.pcurve.matrix.copy()
-                matrix[0] += (
-                    2.0 * np.pi * np.round((placed[vertex] - u) / (2.0 * np.pi)) * matrix[2]
-                )
-                c.pcurve = Pcurve(c.pcurve.kind, matrix)
+                turns = float(np.round((placed[vertex] - u) / (2.0 * np.pi)))
+                for c in entry:
+                    c.pcurve = c.pcurve.turned(2.0 * np.pi * turns)
                 break
-        for vertex, u in _ends(c, edges).items():
+        for vertex, u in _ends(entry, edges).items():
             placed.setdefault(vertex, u)
 
 
-def _ends(c: Coedge, edges: Sequence[Edge]) -> dict[int, float]:
-    """u at the vertices of a coedge."""
-    edge = edges[c.edge]
-    pairs = ((edge.first, c.first), (edge.last, c.last))
-    return {vertex: c.pcurve.point(t)[0] for vertex, t in pairs if vertex is not None}
+def _ends(entry: Sequence[Coedge], edges: Sequence[Edge]) -> dict[int, float]:
+    """u at the vertices of an entry's coedges, which follow each other along their edge."""
+    edge = edges[entry[0].edge]
+    pairs = ((edge.first, entry[0], entry[0].first), (edge.last, entry[-1], entry[-1].last))
+    return {vertex: c.pcurve.point(t)[0] for vertex, c, t in pairs if vertex is not None}
 
 
 def visible_spans(

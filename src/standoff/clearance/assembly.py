@@ -9,7 +9,7 @@ from typing import Any
 
 from standoff.clearance.report import Nearest, Report, Wanted, report_on
 from standoff.motion import Pose
-from standoff.solids.assembly import Assembly, AssemblyAnswer
+from standoff.solids.arrangement import Arrangement, ArrangementAnswer
 
 
 class PartsAtRest:
@@ -27,20 +27,20 @@ class PartsAtRest:
 
     dimension = 3
 
-    def __init__(self, assembly: Assembly, within: float) -> None:
-        self.assembly, self.within = assembly, within
+    def __init__(self, arrangement: Arrangement, within: float) -> None:
+        self.arrangement, self.within = arrangement, within
 
     @property
     def bodies(self) -> Mapping[str, Any]:
-        return self.assembly.bodies
+        return self.arrangement.bodies
 
     @property
     def fixed_poses(self) -> Mapping[str, Pose]:
-        return self.assembly.poses
+        return self.arrangement.poses
 
     def pairs(self) -> list[tuple[str, str]]:
         """All pairs of names."""
-        return self.assembly.pairs()
+        return self.arrangement.pairs()
 
     def margin(self, a: str, b: str) -> float:
         """An assembly's file has no margins: `--min` asks for one."""
@@ -71,9 +71,9 @@ class AssemblyFile:
         return {}
 
 
-def assembly_report(answer: AssemblyAnswer, wanted: Wanted) -> Report:
+def assembly_report(answer: ArrangementAnswer, wanted: Wanted) -> Report:
     """Return the report on an assembly's pairs."""
-    world: Any = PartsAtRest(answer.assembly, answer.within)
+    world: Any = PartsAtRest(answer.arrangement, answer.within)
     near: Any = {
         names: Nearest(found, 0.0, float(found.lower_bound), int(not found.certified))  # type: ignore[arg-type]
         for names, found in answer.near.items()

@@ -64,10 +64,10 @@ def assembly_figure(report: Report, unit: str) -> Figure:
 
 
 def _clouds(report: Report) -> list[Array]:
-    poses = report.world.fixed_poses
+    world: Any = report.world
     return [
-        np.asarray(poses[name].apply(solid_of(body).points))
-        for name, body in report.world.bodies.items()
+        np.asarray(world.fixed_poses[name].apply(solid_of(body).points))
+        for name, body in world.bodies.items()
     ]
 
 
@@ -79,9 +79,10 @@ def _draw_parts(
     corners, colours, lines = [], [], []
     right, up = across(towards)
     lamp = LIGHT @ np.array([right, towards, up])
-    for name, body in report.world.bodies.items():
+    world: Any = report.world
+    for name, body in world.bodies.items():
         solid: Solid = solid_of(body)
-        pose = report.world.fixed_poses[name]
+        pose = world.fixed_poses[name]
         points = np.asarray(pose.apply(solid.points))
         upright = (solid.normals @ pose.rotation.T)[solid.triangles].mean(axis=1)
         seen = upright @ towards > 0.0

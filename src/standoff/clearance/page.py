@@ -61,7 +61,8 @@ def page_of(scene: Scene, report: Report, looked: Looked) -> str:
     at, shown = _pictured(scene, report, looked)
     poses = _poses(scene, report, at)
     unit = scene.length_unit
-    if isinstance(report.world, PartsAtRest):
+    world: Any = report.world
+    if isinstance(world, PartsAtRest):
         from standoff.clearance.assembly_picture import assembly_figure
 
         first = ("The parts", "the worst pairs numbered", assembly_figure(shown, unit))

@@ -41,6 +41,10 @@ class BezierPcurve(Pcurve):
     def data(self) -> Array:
         return np.concatenate([[len(self.matrix) - 1.0], self.matrix.ravel()])
 
+    def turned(self, angle: float) -> BezierPcurve:
+        shift = np.outer(self.matrix[:, 2], [angle, 0.0, 0.0])
+        return BezierPcurve(self.matrix + shift, self.first, self.last)
+
     def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
         block = np.concatenate([[self.first, self.last], self.data])
         h, ht, htt = pcurve_jet(block, self.kind, 2, t)

@@ -78,3 +78,11 @@ class Pcurve(KeepsReadOnly):
     def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
         """(pcurve, first, last) of the parts that a straight line meets at most twice."""
         return [(self, first, last)]
+
+    def turned(self, angle: float) -> Pcurve:
+        """The same curve with u greater by an angle, radians."""
+        if angle == 0.0:
+            return self
+        matrix = self.matrix.copy()
+        matrix[0] += angle * matrix[2]
+        return Pcurve(self.kind, matrix)

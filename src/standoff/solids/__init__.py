@@ -12,7 +12,7 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
-    from standoff.solids.assembly import Assembly, AssemblyAnswer, PartsAnswer
+    from standoff.solids.arrangement import Arrangement, ArrangementAnswer, PartsAnswer
     from standoff.solids.boundary_file import open_boundary, save_boundary
     from standoff.solids.planar.dxf import read_dxf
     from standoff.solids.planar.solid import PlanarSolid
@@ -28,7 +28,7 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
-            "standoff.solids.assembly": ("Assembly", "AssemblyAnswer", "PartsAnswer"),
+            "standoff.solids.arrangement": ("Arrangement", "ArrangementAnswer", "PartsAnswer"),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
             "standoff.solids.planar.dxf": ("read_dxf",),
             "standoff.solids.planar.solid": ("PlanarSolid",),
@@ -37,8 +37,8 @@ else:
     )
 
 __all__ = [
-    "Assembly",
-    "AssemblyAnswer",
+    "Arrangement",
+    "ArrangementAnswer",
     "Continuum",
     "NearestPair",
     "Overlap",

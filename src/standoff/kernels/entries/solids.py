@@ -5,7 +5,8 @@ from numba import types
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, READ, WRITE, WRITE_INTS
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.spatial_pieces import leaf_jet
+from standoff.kernels.solids.spatial_minimum import nearest
+from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid
 from standoff.kernels.solids.spatial_search import search
 from standoff.kernels.values import Pose
 
@@ -23,30 +24,24 @@ def side_at(solid, pose, sense):
     )
 
 
-@entry(
-    SOLID, READ, INT, SOLID, READ, INT, WRITE, WRITE, WRITE, WRITE_INTS, WRITE, WRITE_INTS,
-    work="bodies",
-)  # fmt: skip
-def boundary_distance(
-    solid_a, pose_a, sense_a, solid_b, pose_b, sense_b, best, minima, work, nodes, keys, counts
-):
-    """Of two solids at poses in one frame, seen from outside or inside; `best` says how far."""
-    a, b = side_at(solid_a, pose_a, sense_a), side_at(solid_b, pose_b, sense_b)
+SOLIDS = types.Tuple((SOLID, SOLID))
+# Work space, a heap's nodes and its keys.
+ROOM = types.Tuple((WRITE, WRITE_INTS, WRITE))
+# Of the work space: what a closing needs; the rest holds pairs of leaves.
+CLOSING = 2048
+
+
+@entry(SOLIDS, READ, INTS, WRITE, WRITE, ROOM, WRITE_INTS, work="bodies")
+def boundary_distance(solids, pose, senses, best, minima, room, counts):
+    """Of two solids, B at a pose in A's frame, each seen from outside or inside (`senses`); `best`
+    says how far and how to search."""
+    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    a, b = side_at(solids[0], still, senses[0]), side_at(solids[1], pose, senses[1])
+    work, nodes, keys = room
     limit = len(keys)
-    heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, limit))
-    most = (len(work) - 2048) // 3
-    search(
-        a,
-        b,
-        pointer(best, 0),
-        pointer(minima, 0),
-        heap,
-        limit,
-        pointer(work, 2048),
-        most,
-        pointer(work, 0),
-        pointer(counts, 0),
-    )
+    heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, limit), limit)
+    space = (pointer(work, CLOSING), (len(work) - CLOSING) // 3, pointer(work, 0))
+    search(a, b, pointer(best, 0), pointer(minima, 0), heap, space, pointer(counts, 0))
 
 
 @entry(SOLID, READ, INT, types.float64, types.float64, WRITE, work="bodies")
@@ -57,3 +52,19 @@ def solid_point(solid, pose, leaf, u, v, out):
         vector = jet[i]
         for k in range(3):
             out[3 * i + k] = vector[k]
+
+
+@entry(SOLIDS, READ, INTS, WRITE, WRITE_INTS, work="bodies")
+def nearest_in_leaves(solids, pose, leaves, values, counts):
+    """From the parameters values[:4] of two leaves to those of a local minimum, and the distance in
+    values[4]."""
+    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    a, b = side_at(solids[0], still, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    start = (values[0], values[1], values[2], values[3])
+    box_a, box_b = leaf_box(a, leaves[0]), leaf_box(b, leaves[1])
+    q, distance = nearest(a, leaves[0], box_a, b, leaves[1], box_b, start, pointer(counts, 0))
+    for k in range(4):
+        values[k] = q[k]
+    values[4] = distance
+    on_both = on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])
+    values[5] = 1.0 if on_both else 0.0

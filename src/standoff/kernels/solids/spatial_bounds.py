@@ -16,22 +16,20 @@ from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_heights import height_greatest
+from standoff.kernels.solids.spatial_likeness import differences, to_axis, to_own, turning
 from standoff.kernels.solids.spatial_pieces import (
     CUT_BY_TRIM,
     OUTSIDE_TRIM,
     ZERO,
-    leaf_box,
     leaf_ints,
     leaf_jet,
     leaf_reals,
     meets,
-    own_jet,
     part_box,
     trim_state,
 )
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
-    CENTRE_OF,
     THIRD,
     TORUS_THROUGH,
     form,
@@ -89,16 +87,18 @@ def pulled_back(phi, sign, jet, reach):
 
 
 @kernel
-def third_bounds(m, o, d2, d3):
-    """Bounds of F_uuu, F_uuv, F_uvv and F_vvv from those of the piece, at m[o:]."""
+def third_bounds(m, o, derivatives):
+    """Bounds of F_uuu, F_uuv, F_uvv and F_vvv from those of the piece, at m[o:], and of the first
+    to the third derivative of the potential."""
+    d1, d2, d3 = derivatives
     lu, lv = m[o + S.FIRST], m[o + S.FIRST + 1]
     uu, uv, vv = m[o + S.SECOND], m[o + S.SECOND + 1], m[o + S.SECOND + 2]
     t = o + S.THIRDS
     return (
-        d3 * lu * lu * lu + 3.0 * d2 * lu * uu + m[t],
-        d3 * lu * lu * lv + d2 * (2.0 * lu * uv + uu * lv) + m[t + 1],
-        d3 * lu * lv * lv + d2 * (2.0 * lv * uv + vv * lu) + m[t + 2],
-        d3 * lv * lv * lv + 3.0 * d2 * lv * vv + m[t + 3],
+        d3 * lu * lu * lu + 3.0 * d2 * lu * uu + d1 * m[t],
+        d3 * lu * lu * lv + d2 * (2.0 * lu * uv + uu * lv) + d1 * m[t + 1],
+        d3 * lu * lv * lv + d2 * (2.0 * lv * uv + vv * lu) + d1 * m[t + 2],
+        d3 * lv * lv * lv + 3.0 * d2 * lv * vv + d1 * m[t + 3],
     )
 
 
@@ -159,17 +159,43 @@ def heights_third(phi, side, leaf, box, thirds):
 
 
 @kernel
+def lesser(a, b):
+    return min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])
+
+
+@kernel
+def likely_third(phi, side, leaf, x, reach, thirds):
+    """The same for a potential that is nearly the leaf's own, or turns about nearly its axis."""
+    o, m = leaf_reals(side, leaf), side.numbers
+    e, w = to_own(phi, side, leaf, x, reach)
+    if e < inf:
+        d = differences(phi, x, reach, e, w)
+        if d[0] < inf:
+            thirds = lesser(thirds, third_bounds(m, o, d))
+    known, point, axis = turning(side, leaf)
+    if known:
+        e, w = to_axis(phi, point, axis, x, reach)
+        d = differences(phi, x, reach, e, w)
+        if d[0] < inf:
+            t = third_bounds(m, o, d)
+            thirds = lesser(thirds, (t[0], t[1], t[2], thirds[3]))
+    return thirds
+
+
+@kernel
 def greatest(phi, sign, side, leaf, box, u, v):
-    """(bound of sign phi over a box, its value at (u, v), slopes there, how far they may change)."""
+    """(bound of sign phi over a box, value and slopes at (u, v), how far the slopes may change)."""
     o, m = leaf_reals(side, leaf), side.numbers
     mu, mv = max(box.u1 - u, u - box.u0), max(box.v1 - v, v - box.v0)
     reach = m[o + S.FIRST] * mu + m[o + S.FIRST + 1] * mv
     value, g, H, d2, d3 = pulled_back(phi, sign, leaf_jet(side, leaf, u, v), reach)
     if d2 == inf:
         return value + reach, value, g, (inf, inf)
-    thirds = third_bounds(m, o, d2, d3)
+    thirds = third_bounds(m, o, (1.0, d2, d3))
     if is_plane(phi):
         thirds = heights_third(phi, side, leaf, box, thirds)
+    elif phi.kind != TORUS_THROUGH:
+        thirds = likely_third(phi, side, leaf, leaf_jet(side, leaf, u, v)[0], reach, thirds)
     w = o + S.SPREAD
     wide = widened(H, thirds, (m[w], m[w + 1], m[w + 2]), mu, mv)
     e = (box.u0 - u, box.u1 - u, box.v0 - v, box.v1 - v)
@@ -316,50 +342,58 @@ def held_by_trim(phi, sign, most, side, leaf, box, g, change):
 
 
 @kernel
-def proven(phi, sign, most, side, leaf, box, q, counts):
-    """Is sign phi at most `most` all over the part of a leaf in a box? Its greatest value is
-    expected near the parameters q."""
-    r = leaf_ints(side, leaf)
+def settled(phi, sign, most, part, data, q):
+    """Whether sign phi is at most `most` on a part, as a whole: 1 proven, -1 a point of the solid
+    has more, 0 not known."""
+    side, leaf, b = part.side, part.leaf, part.box
+    u, v = min(max(q[0], b.u0), b.u1), min(max(q[1], b.v0), b.v1)
+    if greatest(phi, sign, side, leaf, b, u, v)[0] <= most:
+        return 1
+    if is_plane(phi):
+        known, height = height_greatest(phi, sign, side, leaf, b)
+        if known and height <= most:
+            return 1
+    cu, cv = 0.5 * (b.u0 + b.u1), 0.5 * (b.v0 + b.v1)
+    if data[0] and (
+        round_axis_greatest(phi, sign, data, b, cu, cv) <= most
+        or round_axis_greatest(phi, sign, data, b, u, v) <= most
+    ):
+        return 1
+    bound, value, g, change = greatest(phi, sign, side, leaf, b, cu, cv)
+    if bound <= most:
+        return 1
+    state = trim_state(side, leaf, b)
+    if state == OUTSIDE_TRIM:
+        return 1
+    if state == CUT_BY_TRIM:
+        if held_by_trim(phi, sign, most, side, leaf, b, g, change):
+            return 1
+        chart = side.own[leaf_ints(side, leaf) + S.CHART]
+        return -1 if value > most and on_face(side.ints, side.reals, chart, cu, cv) else 0
+    return -1 if value > most else 0
+
+
+@kernel
+def proven(phi, sign, most, part, q, counts):
+    """Is sign phi at most `most` all over the solid's piece that is in a part? Its greatest value
+    is expected near the parameters q."""
+    side, leaf, box = part.side, part.leaf, part.box
     o, m = leaf_reals(side, leaf), side.numbers
-    dim = side.own[r + S.DIM]
-    data = axis_data(side, leaf)
-    by_axis = phi.kind == AXIS_OF and data[0]
+    known, centre, first, other, along = axis_data(side, leaf)
+    data = (known and phi.kind == AXIS_OF, centre, first, other, along)
     stack = reals_on_stack(248)
     stack[0], stack[1], stack[2], stack[3] = box.u0, box.u1, box.v0, box.v1
     count, rounds = 1, 0
     while count > 0:
         count -= 1
-        b = S.Box(stack[4 * count], stack[4 * count + 1], stack[4 * count + 2], stack[4 * count + 3])
+        n = 4 * count
+        b = S.Box(stack[n], stack[n + 1], stack[n + 2], stack[n + 3])
         rounds += 1
         counts[0] += 1
-        u, v = min(max(q[0], b.u0), b.u1), min(max(q[1], b.v0), b.v1)
-        bound, value, g, change = greatest(phi, sign, side, leaf, b, u, v)
-        if bound <= most:
+        told = settled(phi, sign, most, S.Part(side, leaf, b), data, q)
+        if told > 0:
             continue
-        if is_plane(phi):
-            known, bound = height_greatest(phi, sign, side, leaf, b)
-            if known and bound <= most:
-                continue
-        cu, cv = 0.5 * (b.u0 + b.u1), 0.5 * (b.v0 + b.v1)
-        if by_axis and (
-            round_axis_greatest(phi, sign, data, b, cu, cv) <= most
-            or round_axis_greatest(phi, sign, data, b, u, v) <= most
-        ):
-            continue
-        bound, value, g, change = greatest(phi, sign, side, leaf, b, cu, cv)
-        if bound <= most:
-            continue
-        state = trim_state(side, leaf, b)
-        if state == OUTSIDE_TRIM:
-            continue
-        if state == CUT_BY_TRIM:
-            if held_by_trim(phi, sign, most, side, leaf, b, g, change):
-                continue
-            if value > most and on_face(side.ints, side.reals, side.own[r + S.CHART], cu, cv):
-                return False
-        elif value > most:
-            return False
-        if rounds > MOST_BOXES or count >= MOST_WAITING or dim == 0:
+        if told < 0 or rounds > MOST_BOXES or count >= MOST_WAITING:
             return False
         wide_u = m[o + S.FIRST] * (b.u1 - b.u0)
         wide_v = m[o + S.FIRST + 1] * (b.v1 - b.v0)
@@ -367,8 +401,8 @@ def proven(phi, sign, most, side, leaf, box, q, counts):
             n = 4 * (count + k)
             stack[n], stack[n + 1], stack[n + 2], stack[n + 3] = b.u0, b.u1, b.v0, b.v1
             if wide_u >= wide_v:
-                stack[n + 1 - k] = cu
+                stack[n + 1 - k] = 0.5 * (b.u0 + b.u1)
             else:
-                stack[n + 3 - k] = cv
+                stack[n + 3 - k] = 0.5 * (b.v0 + b.v1)
         count += 2
     return True

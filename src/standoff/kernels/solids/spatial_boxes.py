@@ -3,7 +3,6 @@ pair, and the queue of those that wait."""
 
 from math import acos, asin, inf, pi
 
-from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, dot, norm, rotate, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
@@ -35,7 +34,9 @@ def node_centre(side, node):
 @kernel
 def half_along(m, o, axes, n):
     return (
-        m[o] * abs(dot(axes[0], n)) + m[o + 1] * abs(dot(axes[1], n)) + m[o + 2] * abs(dot(axes[2], n))
+        m[o] * abs(dot(axes[0], n))
+        + m[o + 1] * abs(dot(axes[1], n))
+        + m[o + 2] * abs(dot(axes[2], n))
     )
 
 
@@ -113,7 +114,10 @@ def admits(a, i, b, j, gap):
         return True
     if angle_a < 0.0 or angle_b < 0.0:
         return False
-    if angle_a + angle_b < pi and angle_between(axis_a, axis_b) < pi - angle_a - angle_b - CONE_SPARE:
+    if (
+        angle_a + angle_b < pi
+        and angle_between(axis_a, axis_b) < pi - angle_a - angle_b - CONE_SPARE
+    ):
         return False
     delta = sub(node_centre(b, j), node_centre(a, i))
     length = norm(delta)

@@ -1,7 +1,5 @@
 """Closing a pair of leaves: no two of their points on the solids are nearer than a bound."""
 
-from math import inf
-
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
@@ -17,12 +15,10 @@ from standoff.kernels.solids.spatial_minimum import (
 from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
     leaf_box,
-    leaf_ints,
     leaf_jet,
     leaf_reals,
     natural,
     on_solid,
-    outward_normal,
     reach_of,
     trim_state,
 )
@@ -45,6 +41,8 @@ MOST_PAIRS = 200
 SMOOTH_SPARE = 2e-7
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
 MARGINS = (1.0, 0.3, 3.0)
+# Of the size: parts shorter than this are not cut again.
+SHORTEST = 1e-9
 
 
 @kernel
@@ -78,8 +76,9 @@ def keep(best, minima, leaf_a, leaf_b, q, distance):
 
 
 @kernel
-def held_along(side, leaf, box, jet, toward, u, v):
+def held_along(part, jet, toward, u, v):
     """Second derivatives that a slope across the side of a box is worth there."""
+    box = part.box
     slope_u, slope_v = dot(toward, jet[1]), dot(toward, jet[2])
     wide_u, wide_v = box.u1 - box.u0, box.v1 - box.v0
     mu = 2.0 * abs(slope_u) / wide_u if wide_u > 0.0 and (u <= box.u0 or u >= box.u1) else 0.0
@@ -88,74 +87,67 @@ def held_along(side, leaf, box, jet, toward, u, v):
 
 
 @kernel
-def by_potential(phi, goal, room, a, leaf_a, box_a, b, leaf_b, box_b, q, counts):
-    """Does a potential prove that two boxes are `goal` apart? `room` is the part of it that the
-    sides get beyond their values at q; below 0 none is left."""
-    x, y = leaf_jet(a, leaf_a, q[0], q[1])[0], leaf_jet(b, leaf_b, q[2], q[3])[0]
-    low, high = potential_jet(phi, x, 0.0)[0], potential_jet(phi, y, 0.0)[0]
-    spare = high - low - goal
-    if spare < 0.0:
-        return False
-    if not proven(phi, 1.0, low + 0.5 * spare, a, leaf_a, box_a, (q[0], q[1]), counts):
-        return False
-    return proven(phi, -1.0, 0.5 * spare - high, b, leaf_b, box_b, (q[2], q[3]), counts)
+def by_own_surface(goal, a, b, q, counts):
+    """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
+    known, phi = natural(a.side, a.leaf)
+    return known and proven(phi, -1.0, -goal, b, q, counts)
 
 
 @kernel
-def by_own_surface(goal, a, leaf_a, b, leaf_b, box_b, q, counts):
-    """Does the potential of A's own kind prove that B's box is `goal` from all of A's surface?"""
-    known, phi = natural(a, leaf_a)
-    return known and proven(phi, -1.0, -goal, b, leaf_b, box_b, q, counts)
-
-
-@kernel
-def by_witness(goal, a, leaf_a, box_a, b, leaf_b, box_b, at, best, counts):
+def by_witness(goal, a, b, at, best, counts):
     """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
     wa, wb, q = at
-    ja, jb = leaf_jet(a, wa, q[0], q[1]), leaf_jet(b, wb, q[2], q[3])
+    ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
     size = best[SIZE]
-    n = direction(a, wa, ja, b, wb, jb, 1e-9 * size)
+    n = direction(a.side, wa, ja, b.side, wb, jb, 1e-9 * size)
     if norm(n) < 0.5:
         return False
     x, y = ja[0], jb[0]
-    here = wa == leaf_a and wb == leaf_b
-    plane = plane_between(x, y, n)
-    if try_at(plane, goal, a, leaf_a, box_a, b, leaf_b, box_b, q, here, x, y, counts):
+    here = wa == a.leaf and wb == b.leaf
+    place = (here, q, x, y)
+    if by_one(plane_between(x, y, n), goal, a, b, place, counts):
         return True
-    span = reach_of(a, leaf_a, box_a.u1 - box_a.u0, box_a.v1 - box_a.v0)
-    span = max(span, reach_of(b, leaf_b, box_b.u1 - box_b.u0, box_b.v1 - box_b.v0))
+    span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
+    span = max(span, reach_of(b.side, b.leaf, b.box.u1 - b.box.u0, b.box.v1 - b.box.v0))
     span = max(min(span, size), 1e-6 * size)
     frame = across(n)
-    held_a = held_along(a, leaf_a, box_a, ja, n, q[0], q[1]) if here else (0.0, 0.0)
-    held_b = held_along(b, leaf_b, box_b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
-    sa = shape(a, wa, ja, n, frame, held_a, span)
-    sb = shape(b, wb, jb, scale(-1.0, n), frame, held_b, span)
+    held_a = held_along(a, ja, n, q[0], q[1]) if here else (0.0, 0.0)
+    held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
+    sa = shape(a.side, wa, ja, n, frame, held_a, span)
+    sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
     for k in range(3):
         phi = torus_between(x, y, n, frame, sa, sb, MARGINS[k] / span)
-        if try_at(phi, goal, a, leaf_a, box_a, b, leaf_b, box_b, q, here, x, y, counts):
+        if by_one(phi, goal, a, b, place, counts):
             return True
     return False
 
 
 @kernel
-def try_at(phi, goal, a, leaf_a, box_a, b, leaf_b, box_b, q, here, x, y, counts):
-    """By one potential through x and y, whose parameters q are those of the boxes if `here`."""
+def middle(box):
+    return 0.5 * (box.u0 + box.u1), 0.5 * (box.v0 + box.v1)
+
+
+@kernel
+def by_one(phi, goal, a, b, place, counts):
+    """By one potential through points x and y, whose parameters q are those of the parts if `here`;
+    each part gets half of what the potential gains beyond the goal."""
+    here, q, x, y = place
     low, high = potential_jet(phi, x, 0.0)[0], potential_jet(phi, y, 0.0)[0]
     spare = 0.5 * (high - low - goal)
     if spare < 0.0:
         return False
     pa, pb = (q[0], q[1]), (q[2], q[3])
     if not here:
-        pa = (0.5 * (box_a.u0 + box_a.u1), 0.5 * (box_a.v0 + box_a.v1))
-        pb = (0.5 * (box_b.u0 + box_b.u1), 0.5 * (box_b.v0 + box_b.v1))
-    if not proven(phi, 1.0, low + spare, a, leaf_a, box_a, pa, counts):
+        pa, pb = middle(a.box), middle(b.box)
+    if not proven(phi, 1.0, low + spare, a, pa, counts):
         return False
-    return proven(phi, -1.0, spare - high, b, leaf_b, box_b, pb, counts)
+    return proven(phi, -1.0, spare - high, b, pb, counts)
 
 
 @kernel
-def slanted(side, leaf, box, jet, delta, length, reach):
+def slanted(part, jet, delta, length, reach):
     """Is no direction from one box to the other normal to a leaf, by its tangents?"""
+    side, leaf, box = part.side, part.leaf, part.box
     o, m = leaf_reals(side, leaf), side.numbers
     hu, hv = 0.5 * (box.u1 - box.u0), 0.5 * (box.v1 - box.v0)
     far = length + reach
@@ -171,27 +163,25 @@ def slanted(side, leaf, box, jet, delta, length, reach):
 
 
 @kernel
-def no_pair(a, leaf_a, box_a, b, leaf_b, box_b, goal, rounding):
-    """(closed, lower bound of the distance) of two boxes by their tangent planes' bounds."""
-    qa = (0.5 * (box_a.u0 + box_a.u1), 0.5 * (box_a.v0 + box_a.v1))
-    qb = (0.5 * (box_b.u0 + box_b.u1), 0.5 * (box_b.v0 + box_b.v1))
-    ja, jb = leaf_jet(a, leaf_a, qa[0], qa[1]), leaf_jet(b, leaf_b, qb[0], qb[1])
+def no_pair(a, b, goal, rounding):
+    """(closed, lower bound of the distance) of two parts by their tangent planes' bounds."""
+    qa, qb = middle(a.box), middle(b.box)
+    ja, jb = leaf_jet(a.side, a.leaf, qa[0], qa[1]), leaf_jet(b.side, b.leaf, qb[0], qb[1])
     delta = sub(jb[0], ja[0])
     length = norm(delta)
-    ha = (0.5 * (box_a.u1 - box_a.u0), 0.5 * (box_a.v1 - box_a.v0))
-    hb = (0.5 * (box_b.u1 - box_b.u0), 0.5 * (box_b.v1 - box_b.v0))
-    reach = reach_of(a, leaf_a, ha[0], ha[1]) + reach_of(b, leaf_b, hb[0], hb[1])
+    ha = (0.5 * (a.box.u1 - a.box.u0), 0.5 * (a.box.v1 - a.box.v0))
+    hb = (0.5 * (b.box.u1 - b.box.u0), 0.5 * (b.box.v1 - b.box.v0))
+    reach = reach_of(a.side, a.leaf, ha[0], ha[1]) + reach_of(b.side, b.leaf, hb[0], hb[1])
     if length == 0.0:
         return False, 0.0
     n = scale(1.0 / length, delta)
     low = max(length - reach, 0.0)
-    flat = length - along(a, leaf_a, ja, n, ha) - along(b, leaf_b, jb, n, hb)
+    flat = length - along(a.side, a.leaf, ja, n, ha) - along(b.side, b.leaf, jb, n, hb)
     low = max(low, flat) - rounding
     if low >= goal:
         return True, low
     if length > reach + rounding and (
-        slanted(a, leaf_a, box_a, ja, delta, length, reach)
-        or slanted(b, leaf_b, box_b, jb, delta, length, reach)
+        slanted(a, ja, delta, length, reach) or slanted(b, jb, delta, length, reach)
     ):
         return True, low
     return False, max(low, 0.0)
@@ -230,37 +220,61 @@ def widths(side, leaf, box):
 
 
 @kernel
-def closed_by_any(a, leaf_a, box_a, b, leaf_b, box_b, best, minima, counts):
-    """Is a pair of boxes closed? Nearer points that are found are kept."""
-    goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-    start = (
-        0.5 * (box_a.u0 + box_a.u1),
-        0.5 * (box_a.v0 + box_a.v1),
-        0.5 * (box_b.u0 + box_b.u1),
-        0.5 * (box_b.v0 + box_b.v1),
-    )
-    q, distance = nearest(a, leaf_a, box_a, b, leaf_b, box_b, start, counts)
-    if distance < best[LEAST] + best[TOLERANCE] and (
-        on_solid(a, leaf_a, q[0], q[1]) and on_solid(b, leaf_b, q[2], q[3])
+def nearest_of(a, b, counts):
+    """(parameters, distance) of a local minimum over two parts, from their middles."""
+    start = (*middle(a.box), *middle(b.box))
+    return nearest(a.side, a.leaf, a.box, b.side, b.leaf, b.box, start, counts)
+
+
+@kernel
+def keep_found(a, b, q, distance, best, minima):
+    """Keep a pair that is as near as the nearest, if both points are on the solids."""
+    if distance <= best[LEAST] + best[TOLERANCE] and (
+        on_solid(a.side, a.leaf, q[0], q[1]) and on_solid(b.side, b.leaf, q[2], q[3])
     ):
-        keep(best, minima, leaf_a, leaf_b, q, distance)
-        goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
+        keep(best, minima, a.leaf, b.leaf, q, distance)
     if best[LEAST] <= best[TOLERANCE]:
         best[MET] = 1.0
+
+
+@kernel
+def closed_by_any(a, b, best, minima, counts):
+    """Is a pair of parts closed? Nearer points that are found are kept."""
+    q, distance = nearest_of(a, b, counts)
+    keep_found(a, b, q, distance, best, minima)
+    if best[MET] > 0.0:
         return True
-    if by_own_surface(goal, a, leaf_a, b, leaf_b, box_b, (q[2], q[3]), counts):
+    goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
+    if by_own_surface(goal, a, b, (q[2], q[3]), counts):
         return True
-    if by_own_surface(goal, b, leaf_b, a, leaf_a, box_a, (q[0], q[1]), counts):
+    if by_own_surface(goal, b, a, (q[0], q[1]), counts):
         return True
-    if distance >= goal and by_witness(
-        goal, a, leaf_a, box_a, b, leaf_b, box_b, (leaf_a, leaf_b, q), best, counts
-    ):
+    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), best, counts):
         return True
     wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
-    if wa == leaf_a and wb == leaf_b and distance >= goal:
+    if wa == a.leaf and wb == b.leaf and distance >= goal:
         return False
     at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
-    return by_witness(goal, a, leaf_a, box_a, b, leaf_b, box_b, (wa, wb, at), best, counts)
+    return by_witness(goal, a, b, (wa, wb, at), best, counts)
+
+
+@kernel
+def put_halves(a, b, best, work, count, low):
+    """Cut the longer part in two; the new count of pairs. One too short to cut stays open."""
+    au, av = widths(a.side, a.leaf, a.box)
+    bu, bv = widths(b.side, b.leaf, b.box)
+    if max(max(au, av), max(bu, bv)) <= SHORTEST * best[SIZE]:
+        best[OPEN] = min(best[OPEN], low)
+        return count
+    if max(au, av) >= max(bu, bv):
+        first, second = split(a.box, au >= av)
+        put_pair(work, count, first, b.box, low)
+        put_pair(work, count + 1, second, b.box, low)
+    else:
+        first, second = split(b.box, bu >= bv)
+        put_pair(work, count, a.box, first, low)
+        put_pair(work, count + 1, a.box, second, low)
+    return count + 2
 
 
 @kernel
@@ -271,10 +285,10 @@ def close_leaves(a, leaf_a, b, leaf_b, best, minima, work, counts):
     while count > 0 and best[MET] == 0.0:
         count -= 1
         o = PAIR_REALS * count
-        box_a = S.Box(work[o], work[o + 1], work[o + 2], work[o + 3])
-        box_b = S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7])
+        pa = S.Part(a, leaf_a, S.Box(work[o], work[o + 1], work[o + 2], work[o + 3]))
+        pb = S.Part(b, leaf_b, S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7]))
         goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-        done, low = no_pair(a, leaf_a, box_a, b, leaf_b, box_b, goal, best[ROUNDING])
+        done, low = no_pair(pa, pb, goal, best[ROUNDING])
         low = max(low, work[o + 8])
         if done:
             continue
@@ -282,24 +296,11 @@ def close_leaves(a, leaf_a, b, leaf_b, best, minima, work, counts):
             best[OPEN] = min(best[OPEN], low)
             continue
         if (
-            trim_state(a, leaf_a, box_a) == OUTSIDE_TRIM
-            or trim_state(b, leaf_b, box_b) == OUTSIDE_TRIM
+            trim_state(a, leaf_a, pa.box) == OUTSIDE_TRIM
+            or trim_state(b, leaf_b, pb.box) == OUTSIDE_TRIM
         ):
             continue
-        if closed_by_any(a, leaf_a, box_a, b, leaf_b, box_b, best, minima, counts):
+        if closed_by_any(pa, pb, best, minima, counts):
             continue
         counts[4] += 1
-        au, av = widths(a, leaf_a, box_a)
-        bu, bv = widths(b, leaf_b, box_b)
-        if max(max(au, av), max(bu, bv)) <= 1e-9 * best[SIZE]:
-            best[OPEN] = min(best[OPEN], low)
-        elif max(au, av) >= max(bu, bv):
-            first, second = split(box_a, au >= av)
-            put_pair(work, count, first, box_b, low)
-            put_pair(work, count + 1, second, box_b, low)
-            count += 2
-        else:
-            first, second = split(box_b, bu >= bv)
-            put_pair(work, count, box_a, first, low)
-            put_pair(work, count + 1, box_a, second, low)
-            count += 2
+        count = put_halves(pa, pb, best, work, count, low)

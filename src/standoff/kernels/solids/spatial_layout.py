@@ -56,3 +56,11 @@ class Box(NamedTuple):
     u1: Any
     v0: Any
     v1: Any
+
+
+class Part(NamedTuple):
+    """A leaf of a solid over a box of its parameters."""
+
+    side: Any
+    leaf: Any
+    box: Any

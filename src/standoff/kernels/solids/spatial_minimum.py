@@ -177,7 +177,11 @@ def shape(side, leaf, jet, toward, frame, held, span):
     det = a * d - b * c
     if abs(det) <= 1e-9 * (a * a + b * b + c * c + d * d):
         return sharp, 0.0, sharp
-    uu, uv, vv = -dot(toward, jet[3]) + held[0], -dot(toward, jet[4]), -dot(toward, jet[5]) + held[1]
+    uu, uv, vv = (
+        -dot(toward, jet[3]) + held[0],
+        -dot(toward, jet[4]),
+        -dot(toward, jet[5]) + held[1],
+    )
     # rows of the inverse of [[a, b], [c, d]]: parameters per length along e1 and e2
     p, q, r, s = d / det, -b / det, -c / det, a / det
     s11 = uu * p * p + 2.0 * uv * p * r + vv * r * r

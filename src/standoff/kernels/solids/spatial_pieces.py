@@ -2,7 +2,7 @@
 
 from math import inf
 
-from standoff.kernels.algebra.vectors import cross, norm, rotate, scale, sub
+from standoff.kernels.algebra.vectors import cross, norm, rotate, scale
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
@@ -13,10 +13,9 @@ from standoff.kernels.body.features import (
     vertex_point,
 )
 from standoff.kernels.body.trimming import on_face
-from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack, shared
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
-from standoff.kernels.values import Pose
 
 ZERO = (0.0, 0.0, 0.0)
 OUTSIDE_TRIM, INSIDE_TRIM, CUT_BY_TRIM = 0, 1, 2
@@ -52,7 +51,14 @@ def own_jet(side, leaf, u, v):
     if dim == 1:
         x, xt, xtt = edge_jet(side.ints, side.reals, side.own[r + S.FEATURE], u)
         return x, xt, ZERO, xtt, ZERO, ZERO
-    return vertex_point(side.ints, side.reals, side.own[r + S.FEATURE]), ZERO, ZERO, ZERO, ZERO, ZERO
+    return (
+        vertex_point(side.ints, side.reals, side.own[r + S.FEATURE]),
+        ZERO,
+        ZERO,
+        ZERO,
+        ZERO,
+        ZERO,
+    )
 
 
 @shared
@@ -142,9 +148,7 @@ def piece_meets(side, piece, box):
         small = part.u1 - part.u0 <= 0.25 * (box.u1 - box.u0) or (
             part.v1 - part.v0 <= 0.25 * (box.v1 - box.v0)
         )
-        inside = (
-            box.u0 <= part.u0 and part.u1 <= box.u1 and box.v0 <= part.v0 and part.v1 <= box.v1
-        )
+        inside = box.u0 <= part.u0 and part.u1 <= box.u1 and box.v0 <= part.v0 and part.v1 <= box.v1
         if inside or rounds > 40 or count >= 22 or (small and rounds > 20):
             return True
         tm = 0.5 * (ta + tb)

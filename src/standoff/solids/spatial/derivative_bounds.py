@@ -4,22 +4,27 @@ kinds, to the second with its spread for all others."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import comb
 
 import numpy as np
 
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.curves import ConicArc, Curve, Line
-from standoff.geometry.interval_vectors import length
-from standoff.geometry.intervals import Interval
+from standoff.geometry.interval_vectors import length, mapped
+from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.series import Series, power
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
+from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.solids.spatial.tolerances import BOUND_INFLATION
 
 # Columns: first (2), second (3), third (4) derivatives, spread of the second (3).
 COLUMNS = 12
+# Partial derivatives in the order of the columns.
+ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 FIRST, SECOND, THIRD, SPREAD = slice(0, 2), slice(2, 5), slice(5, 9), slice(9, 12)
 
 
@@ -31,6 +36,9 @@ def surface_derivatives(surface: Surface, rows: Array) -> Array:
         L.CONE: _cone,
         L.TORUS: _torus,
         L.SPHERE: _sphere,
+        L.NURBS: _nurbs,
+        L.REVOLUTION: _revolution,
+        L.EXTRUSION: _extrusion,
     }.get(surface.kind, _any)
     return made(surface, rows) * (1.0 + BOUND_INFLATION)
 
@@ -86,6 +94,65 @@ def _sphere(surface: Surface, rows: Array) -> Array:
         size = length(*(Interval(p.lo[k + 1], p.hi[k + 1]) for p in parts))
         found[:, k] = factor * most * size.hi
     return found
+
+
+def _nurbs(surface: Surface, rows: Array) -> Array:
+    """From the nets of the homogeneous derivatives, by Leibniz's rule for x w."""
+    assert isinstance(surface, NurbsSurface)
+    nets = surface.nets_over(Boxes(rows[:, [0, 2]], rows[:, [1, 3]]))
+    centre = interval(nets.points.middle.mean(axis=1)[:, None])
+    h, w = {}, {}
+    for order in ORDERS:
+        net = _row(nets.net(*order))
+        h[order], w[order] = _hull(net[:3] - centre * net[3]), _hull(net[3])
+    x = {(0, 0): _hull(nets.points - centre)}
+    found = np.zeros((len(rows), COLUMNS))
+    for k, (a, b) in enumerate(ORDERS[1:]):
+        total = h[a, b]
+        for i, j in ORDERS:
+            if i <= a and j <= b and (i, j) != (a, b):
+                factor = float(comb(a, i) * comb(b, j))
+                total = total - x[i, j] * w[a - i, b - j] * factor
+        x[a, b] = total / w[0, 0]
+        mapped_ = mapped(surface.linear, x[a, b])
+        found[:, k] = length(mapped_[0], mapped_[1], mapped_[2]).hi
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def _row(net: Interval) -> Interval:
+    """(c, k, n) coefficients in one row, from (c, n, i, j)."""
+    low, high = (np.moveaxis(e.reshape(*e.shape[:2], -1), 1, 2) for e in (net.lo, net.hi))
+    return Interval(low, high)
+
+
+def _hull(coefficients: Interval) -> Interval:
+    """Bounds of values from those of the coefficients on the axis before the last."""
+    return Interval(coefficients.lo.min(axis=-2), coefficients.hi.max(axis=-2))
+
+
+def _revolution(surface: Surface, rows: Array) -> Array:
+    assert isinstance(surface, Revolution)
+    profile, most = surface.profile, _norms(surface)[2]
+    ranges = [(float(a), float(b)) for a, b in rows[:, 2:]]
+    c = curve_derivatives(profile, ranges)
+    r = profile.jets_over(Interval(rows[:, 2], rows[:, 3]))[0, 0].magnitude
+    found = np.zeros((len(rows), COLUMNS))
+    columns = (r, c[:, 0], r, c[:, 0], c[:, 1], r, c[:, 0], c[:, 1], c[:, 2])
+    for k, column in enumerate(columns):
+        found[:, k] = most * column
+    found[:, SPREAD.stop - 1] = most * c[:, 3]
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def _extrusion(surface: Surface, rows: Array) -> Array:
+    assert isinstance(surface, Extrusion)
+    most = _norms(surface)[2]
+    c = curve_derivatives(surface.profile, [(float(a), float(b)) for a, b in rows[:, :2]])
+    found = np.zeros((len(rows), COLUMNS))
+    found[:, 0], found[:, 2], found[:, 5] = most * c[:, 0], most * c[:, 1], most * c[:, 2]
+    found[:, 1] = most * float(np.linalg.norm(surface.direction))
+    found[:, SPREAD.start] = most * c[:, 3]
+    return np.where(np.isfinite(found), found, np.inf)
 
 
 def _any(surface: Surface, rows: Array) -> Array:

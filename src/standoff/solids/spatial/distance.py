@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from standoff.bodies.report import BoundaryReport
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
@@ -87,7 +88,7 @@ def _inside(pair: PlacedPair, which: str) -> bool:
 
 def _references(solid: Solid) -> Array:
     if solid.references is None:
-        solid.references = reference_points(solid, TRIED)[:TRIED]
+        solid.references = reference_points(solid, TRIED)
     return solid.references
 
 
@@ -104,7 +105,7 @@ def _apart(
     evaluations: int,
 ) -> SolidProximity:
     places = _places(pair, found, senses)
-    continuum = continuum_of(pair, places, found.upper, found.tolerance)
+    continuum = continuum_of(pair, places, found, senses)
     proven = found.upper - found.lower <= PROVEN * found.tolerance
     if not proven:
         status = Status.DEADLINE if found.counts[0] > evaluations else Status.WITHIN
@@ -126,11 +127,10 @@ def _in_cavity(pair: PlacedPair, place: Place) -> bool:
     """Is the nearest place on a cavity's shell, so that one solid lies in the other's cavity?"""
     for solid, leaf in ((pair.a, int(place.row[1])), (pair.b, int(place.row[2]))):
         report = solid.report
-        cavities = getattr(report, "cavities", ())
-        if not cavities:
+        if not isinstance(report, BoundaryReport) or not report.cavities:
             continue
         part = solid.leaves[leaf]
-        faces = {f for k in cavities for f in report.shells[k]}
+        faces = {f for k in report.cavities for f in report.shells[k]}
         if part.dim == 2 and part.feature in faces:
             return True
         if part.dim == 1:

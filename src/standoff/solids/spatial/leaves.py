@@ -1,5 +1,5 @@
-"""Leaves of a solid: rectangles of its faces, intervals of its edges, and its vertices, with what is
-proven of each."""
+"""Leaves of a solid: rectangles of its faces, intervals of its edges, and its vertices, with what
+is proven of each."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of, round_arc
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
-from standoff.solids.spatial.tolerances import BOUND_INFLATION, SMOOTH_JOIN
+from standoff.solids.spatial.tolerances import BOUND_INFLATION, COLLAPSED_FRAME, SMOOTH_JOIN
 from standoff.solids.spatial.trims import Piece, edge_ranges, pieces_of
 
 # Half angle of a leaf's cone of normals, radians.
@@ -29,6 +30,8 @@ LONGEST, LONGEST_CUT = 0.5, 0.12
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
 UNKNOWN = np.pi
+# What stands in place of a kind of potential for an edge that is an arc of a circle.
+ROUND_ARC = -2
 
 
 @dataclass
@@ -46,6 +49,7 @@ class Leaf:
     centre: Array
     axes: Array
     half: Array
+    beside: int = -1
 
 
 def face_leaves(
@@ -69,9 +73,9 @@ def face_leaves(
         split = (bounds.angle > WIDEST) | too_long
         if depth == MOST_HALVINGS:
             split[:] = False
-        for k in np.flatnonzero(~split):
+        kept = np.flatnonzero(~split)
+        for k, box in zip(kept, _face_boxes(chart, waiting[kept]), strict=True):
             cone = _face_cone(chart, bounds.axis[k], float(bounds.angle[k]))
-            box = _face_box(chart, waiting[k])
             reals = _leaf_reals(waiting[k], d[k], cone, natural[1])
             found.append(
                 Leaf(2, chart.face, chart.number, len(cuts[k]) > 0, S.OUTSIDE | S.INSIDE,
@@ -87,9 +91,9 @@ def _started(chart: FaceChart) -> Array:
     u0, u1, v0, v1 = chart.rectangle
     if chart.surface.periodic:
         u1 = min(u1, u0 + 2.0 * np.pi)
-    us, vs = chart.surface.analytic_breaks()
-    us = [u0, *sorted(u for u in np.asarray(us) if u0 < u < u1), u1]
-    vs = [v0, *sorted(v for v in np.asarray(vs) if v0 < v < v1), v1]
+    breaks = chart.surface.analytic_breaks()
+    us = [u0, *sorted(u for u in np.asarray(breaks[0]).tolist() if u0 < u < u1), u1]
+    vs = [v0, *sorted(v for v in np.asarray(breaks[1]).tolist() if v0 < v < v1), v1]
     return np.array([[a, b, c, d] for a, b in pairwise(us) for c, d in pairwise(vs)])
 
 
@@ -97,7 +101,8 @@ def _on_it(
     boundary: PackedParts, chart: FaceChart, rows: Array, pieces: list[Piece], own: list[int]
 ) -> tuple[Array, list[list[int]]]:
     """The rectangles that may hold points of the face, and the pieces that may meet each."""
-    kept, cuts = [], []
+    kept: list[Array] = []
+    cuts: list[list[int]] = []
     low = np.array([pieces[k].low for k in own]).reshape(-1, 2)
     high = np.array([pieces[k].high for k in own]).reshape(-1, 2)
     for row in rows:
@@ -125,9 +130,12 @@ def _bends_along_u(
 ) -> NDArray[np.bool_]:
     hu, hv = rows[:, 1] - rows[:, 0], rows[:, 3] - rows[:, 2]
     with np.errstate(all="ignore"):
-        bend_u = (d[:, 2] * hu + d[:, 3] * hv) / d[:, 0]
-        bend_v = (d[:, 4] * hv + d[:, 3] * hu) / d[:, 1]
-    return np.asarray(np.where(bent, bend_u >= bend_v, wide[0] >= wide[1]))
+        bend_u = (d[:, 2] / d[:, 0] + d[:, 3] / d[:, 1]) * hu
+        bend_v = (d[:, 4] / d[:, 1] + d[:, 3] / d[:, 0]) * hv
+    known = np.isfinite(bend_u) & np.isfinite(bend_v)
+    by_bend = np.where(known, bend_u >= bend_v, hu >= hv)
+    by_width = np.where(np.isfinite(wide).all(axis=0), wide[0] >= wide[1], hu >= hv)
+    return np.asarray(np.where(bent, by_bend, by_width))
 
 
 def _halves(rows: Array, by_u: NDArray[np.bool_]) -> Array:
@@ -145,12 +153,16 @@ def _face_cone(chart: FaceChart, axis: Array, angle: float) -> Array:
     return np.array([*out, wide, *-out, wide])
 
 
-def _face_box(chart: FaceChart, row: Array) -> tuple[Array, Array, Array]:
-    u, v = 0.5 * (row[0] + row[1]), 0.5 * (row[2] + row[3])
-    _, xu, xv, *_ = chart.surface.jet(float(u), float(v))
-    axes = frame_along(xu if np.linalg.norm(xu) > 0 else xv, xv)
-    low, high = chart.surface.extents(row[None], axes)
-    return box_of(axes, low[:, 0], high[:, 0])
+def _face_boxes(chart: FaceChart, rows: Array) -> list[tuple[Array, Array, Array]]:
+    """(centre, axes, half) of a box round each rectangle's piece of the surface."""
+    axes = []
+    for u0, u1, v0, v1 in rows.tolist():
+        _, xu, xv, *_ = chart.surface.jet(0.5 * (u0 + u1), 0.5 * (v0 + v1))
+        axes.append(frame_along(xu if np.linalg.norm(xu) > 0.0 else xv, xv))
+    if not axes:
+        return []
+    low, high = chart.surface.extents(rows, np.moveaxis(np.array(axes), 0, -1))
+    return [box_of(a, low[:, k], high[:, k]) for k, a in enumerate(axes)]
 
 
 def frame_along(first: Array, second: Array) -> Array:
@@ -158,7 +170,7 @@ def frame_along(first: Array, second: Array) -> Array:
     scale = np.linalg.norm(first)
     a = first / scale if scale > 0.0 else np.array([1.0, 0.0, 0.0])
     b = second - (second @ a) * a
-    if np.linalg.norm(b) <= 1e-6 * max(float(np.linalg.norm(second)), 1e-300):
+    if np.linalg.norm(b) <= COLLAPSED_FRAME * max(float(np.linalg.norm(second)), 1e-300):
         b = np.eye(3)[int(np.abs(a).argmin())]
         b = b - (b @ a) * a
     b = b / np.linalg.norm(b)
@@ -195,9 +207,14 @@ def _edge_flags(boundary: PackedParts, number: int) -> int:
 
 
 def edge_leaves(
-    boundary: PackedParts, number: int, ranges: list[tuple[float, float]], own: list[Cone]
+    boundary: PackedParts,
+    number: int,
+    ranges: list[tuple[float, float]],
+    own: list[Cone],
+    beside: tuple[int, Array],
 ) -> list[Leaf]:
-    """The leaves of one edge: its parts, with the cones of their normals."""
+    """The leaves of one edge: its parts, with the cones of their normals, and the potential of a
+    round face beside it."""
     flags = _edge_flags(boundary, number)
     senses = S.INSIDE if flags & L.REFLEX else S.OUTSIDE
     if flags & (L.MIXED | L.CREASED):
@@ -221,9 +238,9 @@ def edge_leaves(
         cones[7] = cone[1] if senses & S.INSIDE else -1.0
         every = np.zeros(12)
         every[0], every[2], every[5], every[9] = d
-        reals = _leaf_reals(np.array([first, last, 0.0, 0.0]), every, cones, np.zeros(9))
-        kind = -2 if arc else -1
-        found.append(Leaf(1, feature, -1, False, senses, [], kind, reals, x, axes, half))
+        reals = _leaf_reals(np.array([first, last, 0.0, 0.0]), every, cones, beside[1])
+        kind = ROUND_ARC if arc else -1
+        found.append(Leaf(1, feature, -1, False, senses, [], kind, reals, x, axes, half, beside[0]))
     return found
 
 
@@ -304,8 +321,14 @@ def all_leaves(boundary: PackedParts) -> tuple[list[Leaf], list[Piece]]:
     ]
     ranges = {k: _parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
     cones = edge_cones(charts, pieces, ranges)
+    round_faces = {}
+    for piece in pieces:
+        kind, record = natural_of(charts[piece.chart])
+        if kind > TORUS_THROUGH:
+            round_faces[piece.edge] = kind, record
     for number, parts in ranges.items():
         if parts:
-            found += edge_leaves(boundary, number, parts, cones[number])
+            beside = round_faces.get(number, (-1, np.zeros(9)))
+            found += edge_leaves(boundary, number, parts, cones[number], beside)
     found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
     return found, pieces

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -58,9 +59,6 @@ def least_distance(
 
     `below`: distances from here on are not looked for.
     """
-    import threading
-
-    work, nodes, keys = _scratch(threading.get_ident())
     best = np.zeros(C.BEST_REALS)
     best[C.LEAST], best[C.OPEN] = below, np.inf
     best[C.TOLERANCE] = PROOF_TOLERANCE * size
@@ -69,9 +67,14 @@ def least_distance(
     minima = np.zeros(C.MINIMUM_REALS * C.MOST_MINIMA)
     counts = np.zeros(8, dtype=np.int64)
     boundary_distance(
-        packed_a, IDENTITY, senses[0], packed_b, pose, senses[1], best, minima, work, nodes, keys,
+        (packed_a, packed_b),
+        pose,
+        np.array(senses, dtype=np.int64),
+        best,
+        minima,
+        _scratch(threading.get_ident()),
         counts,
-    )  # fmt: skip
+    )
     upper = float(best[C.LEAST])
     rows = minima.reshape(-1, C.MINIMUM_REALS)[: int(best[C.N_MINIMA])]
     rows = rows[rows[:, 0] <= upper + best[C.TOLERANCE]]

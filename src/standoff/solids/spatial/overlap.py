@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.tolerances import STILL
 
 # Parts of the size: the first step of the ascent, and the last.
 FIRST_STEP, LAST_STEP = 0.1, 1e-5
 MOST_STEPS = 60
+# Steps from a common point of both boundaries, parts of the size, among which one inside both is
+# sought where the ascent finds none.
+LOOKS = (0.03, 3e-3, 3e-4, 3e-5)
+WAYS = np.array([w for w in product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
 
 
 def common_ball(pair: PlacedPair, starts: Array, least: float) -> Overlap | None:
@@ -20,16 +27,31 @@ def common_ball(pair: PlacedPair, starts: Array, least: float) -> Overlap | None
     """
     best, where = -np.inf, starts[0]
     for start in starts:
-        depth, point = _climbed(pair, start)
+        depth, point = _climbed(pair, start, FIRST_STEP)
         if depth > best:
             best, where = depth, point
+    if best <= least:
+        best, where = _beside(pair, starts[0], least)
     return Overlap(where, best) if best > least else None
 
 
-def _climbed(pair: PlacedPair, start: Array) -> tuple[float, Array]:
+def _beside(pair: PlacedPair, start: Array, least: float) -> tuple[float, Array]:
+    """From a point inside both that is sought beside a common point of the boundaries."""
+    size = min(pair.a.size, pair.b.size)
+    ways = WAYS / np.linalg.norm(WAYS, axis=1)[:, None]
+    for look in LOOKS:
+        spots = start + look * size * ways
+        depths = [min(pair.depths(spot)[:2]) for spot in spots]
+        k = int(np.argmax(depths))
+        if depths[k] > least:
+            return _climbed(pair, spots[k], look)
+    return -np.inf, start
+
+
+def _climbed(pair: PlacedPair, start: Array, first: float) -> tuple[float, Array]:
     size = min(pair.a.size, pair.b.size)
     point, (da, db, ga, gb) = start, pair.depths(start)
-    step = FIRST_STEP * size
+    step = first * size
     for _ in range(MOST_STEPS):
         if step < LAST_STEP * size:
             break
@@ -37,7 +59,7 @@ def _climbed(pair: PlacedPair, start: Array) -> tuple[float, Array]:
         ways = [worse, worse + other, worse - (worse @ other) * other]
         for way in ways:
             length = float(np.linalg.norm(way))
-            if length < 1e-6:
+            if length < STILL:
                 continue
             trial = point + step * way / length
             told = pair.depths(trial)

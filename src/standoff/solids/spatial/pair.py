@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.kernels.entries.solids import nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
 from standoff.solids.answer import NearestPair
 from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
-from standoff.solids.spatial.points import distance_to_boundary, signed_distances
+from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.tolerances import DIRECTED
 
 
 @dataclass(frozen=True)
@@ -61,10 +64,8 @@ class PlacedPair:
         y = leaf_jet_of(self.b.packed, leaf_b, row[5], row[6])[0] @ self.rb.T + self.pb
         away = y - x
         length = float(np.linalg.norm(away))
-        if length > 1e-9 * self.size:
-            normal = away / length
-        else:
-            normal = self._normal_at(row, senses)
+        told = length > DIRECTED * self.size
+        normal = away / length if told else self._normal_at(row, senses)
         return Place(row, x, y, normal)
 
     def _normal_at(self, row: Array, senses: tuple[int, int]) -> Array:
@@ -103,15 +104,17 @@ class PlacedPair:
             [-n, -np.cross(place.point_a - self.pa, n), n, np.cross(place.point_b - self.pb, n)]
         )
 
-    def distance_to_b(self, point: Array) -> float:
-        """Of a world point from B's boundary, without a sign."""
-        return distance_to_boundary(self.b, self.in_b(point)).upper
-
-    def on_a(self, point: Array) -> Array:
-        """The point of A's boundary that is nearest to a world point."""
-        found = distance_to_boundary(self.a, self.in_a(point))
-        x = leaf_jet_of(self.a.packed, int(found.best[2]), found.best[5], found.best[6])[0]
-        return np.asarray(x @ self.ra.T + self.pa)
+    def found_from(self, row: Array, start: Array) -> Array | None:
+        """A row of the local minimum that Newton's method finds in a row's leaves from other
+        parameters (4,); None where it is off a solid."""
+        values = np.array([*start, 0.0, 0.0])
+        leaves = row[1:3].astype(np.int64)
+        counts = np.zeros(8, dtype=np.int64)
+        solids = (self.a.packed, self.b.packed)
+        nearest_in_leaves(solids, self.relative, leaves, values, counts)
+        if values[5] == 0.0:
+            return None
+        return np.array([values[4], row[1], row[2], *values[:4], 0.0])
 
     def depths(self, point: Array) -> tuple[float, float, Array, Array]:
         """(how deep a world point is in A and in B, at least; how each grows there)."""
@@ -131,11 +134,11 @@ def parameters(solid: Solid, leaf: int, values: Array) -> tuple[float, ...]:
 def reference_points(solid: Solid, count: int) -> Array:
     """Points of a solid's boundary, own frame: vertices first, then middles of leaves."""
     vertices = np.asarray(solid.boundary.vertex_points).reshape(-1, 3)[:count]
+    whole = (k for k, leaf in enumerate(solid.leaves) if leaf.dim and not leaf.cut)
     others = [
         leaf_jet_of(solid.packed, k, *middle_of(solid, k))[0]
-        for k, leaf in enumerate(solid.leaves)
-        if leaf.dim and not leaf.cut
-    ][:count]
+        for k in islice(whole, count - len(vertices))
+    ]
     return np.vstack([vertices, np.reshape(others, (-1, 3))])
 
 

@@ -12,8 +12,8 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import CENTRE_OF
 from standoff.solids.spatial.minimum import EITHER, IDENTITY, Found, leaf_jet_of, least_distance
-from standoff.solids.spatial.solid import Solid
 from standoff.solids.spatial.sides import outside_direction
+from standoff.solids.spatial.solid import Solid
 
 
 class PointDistances(NamedTuple):

@@ -69,6 +69,7 @@ class Solid:
         self._compare("area", area, relative)
         self.own, self.numbers, self.leaves = packed_leaves(boundary)
         self.references: Array | None = None
+        self.vertex_normals: dict[int, Array | None] = {}
 
     def _compare(self, name: str, given: float | None, relative: float) -> None:
         if given is None:

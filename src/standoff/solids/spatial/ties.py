@@ -2,84 +2,131 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Continuum
+from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.tolerances import CONTINUUM_LENGTH, SAME_PAIR
+from standoff.solids.spatial.tolerances import (
+    CONTINUUM_LENGTH,
+    SAME_BASIN,
+    SAME_PAIR,
+    STRAIGHT,
+    VALLEY,
+)
 
-# How many neighbours of a pair are tried for a continuum between them.
+# How many of the nearest pairs are tried.
 TRIED = 4
 MOST_CORNERS = 8
+# A surface's pieces are at least this part as wide as long; an arc's bend is less.
+WIDE = 0.3
+# Turns between neighbours on a closed arc, radians, at most.
+OPEN_TURN = 1.6
 
 
 def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     """Without those that were found twice."""
     kept: list[Place] = []
-    for place in places:
-        spot = np.concatenate([place.point_a, place.point_b])
-        if all(
-            np.abs(spot - np.concatenate([k.point_a, k.point_b])).max() > SAME_PAIR * pair.size
-            for k in kept
-        ):
+    for place in sorted(places, key=lambda each: each.distance):
+        if not any(_same(place, other, pair.size) for other in kept):
             kept.append(place)
     return kept
 
 
+def _same(place: Place, other: Place, size: float) -> bool:
+    """Is a pair another one again, or cut off its valley by the side of a leaf?"""
+    away = max(
+        float(np.linalg.norm(place.point_a - other.point_a)),
+        float(np.linalg.norm(place.point_b - other.point_b)),
+    )
+    farther = place.distance - other.distance > VALLEY * size
+    return away <= (SAME_BASIN if farther else SAME_PAIR) * size
+
+
 def continuum_of(
-    pair: PlacedPair, places: Sequence[Place], distance: float, tolerance: float
+    pair: PlacedPair, places: Sequence[Place], found: Found, senses: tuple[int, int]
 ) -> Continuum | None:
-    """The continuum that distinct places belong to; None if they are single ones.
+    """The continuum that the nearest place belongs to; None if it is a single one.
 
-    It is one where points between two of them are nearest pairs too.
+    It is one if Newton's method finds other pairs at the same distance from other starts in the
+    same pieces.
     """
-    if len(places) < 2:
-        return None
-    spots = np.array([p.point_a for p in places])
-    away = np.linalg.norm(spots - spots[0], axis=1)
-    order = [k for k in np.argsort(away) if away[k] > CONTINUUM_LENGTH * pair.size][:TRIED]
-    for k in order:
-        if _held(pair, 0.5 * (spots[0] + spots[k]), distance, tolerance):
-            return _described(pair, places, int(k), distance, tolerance)
-    # or the points of A are one, and those of B are not
-    other = np.array([p.point_b for p in places])
-    if order or float(np.ptp(other, axis=0).max()) <= CONTINUUM_LENGTH * pair.size:
-        return None
-    return None
+    most = found.upper + found.tolerance
+    told: Continuum | None = None
+    ordered = sorted(places, key=lambda place: -_freedom(pair, place))
+    for place in ordered[:TRIED]:
+        others = _others(pair, place, most, senses)
+        if others and (told is None or told.kind != "surface"):
+            told = _described(place, others, places)
+    return told
 
 
-def _held(pair: PlacedPair, point: Array, distance: float, tolerance: float) -> bool:
-    """Is A's boundary near a world point at the least distance from B's?"""
-    return bool(pair.distance_to_b(pair.on_a(point)) <= distance + 2.0 * tolerance)
+def _freedom(pair: PlacedPair, place: Place) -> int:
+    """How many parameters a pair of leaves has."""
+    return pair.a.leaves[int(place.row[1])].dim + pair.b.leaves[int(place.row[2])].dim
+
+
+def _others(
+    pair: PlacedPair, place: Place, most: float, senses: tuple[int, int]
+) -> list[tuple[Array, Array]]:
+    """Pairs (x, y) in the leaves of a place at the least distance, more than a little away."""
+    found = []
+    for start in _starts(pair, place.row):
+        row = pair.found_from(place.row, start)
+        if row is None or row[0] > most:
+            continue
+        other = pair.place(row, senses)
+        away = max(
+            float(np.linalg.norm(other.point_a - place.point_a)),
+            float(np.linalg.norm(other.point_b - place.point_b)),
+        )
+        if away > CONTINUUM_LENGTH * pair.size:
+            found.append((other.point_a, other.point_b))
+    return found
+
+
+def _starts(pair: PlacedPair, row: Array) -> Iterator[Array]:
+    """Parameters at the corners of one leaf and the middles of its sides, those of the other held,
+    and the other way round."""
+    q = row[3:7]
+    for side, solid in enumerate((pair.a, pair.b)):
+        u0, u1, v0, v1 = solid.leaves[int(row[1 + side])].reals[:4]
+        for u, v in product((u0, 0.5 * (u0 + u1), u1), (v0, 0.5 * (v0 + v1), v1)):
+            start = q.copy()
+            start[2 * side : 2 * side + 2] = u, v
+            yield start
 
 
 def _described(
-    pair: PlacedPair, places: Sequence[Place], k: int, distance: float, tolerance: float
+    place: Place, others: list[tuple[Array, Array]], places: Sequence[Place]
 ) -> Continuum:
-    spots = np.array([p.point_a for p in places])
-    along = spots[k] - spots[0]
-    across = np.cross(places[0].normal, along)
-    step = 0.05 * across
-    middle = 0.5 * (spots[0] + spots[k])
-    surface = any(_held(pair, middle + s * step, distance, tolerance) for s in (1.0, -1.0))
-    if surface:
-        return Continuum("surface", _corners(places, spots))
+    near = np.array([x for x, _ in others]) - place.point_a
+    if float(np.ptp(near, axis=0).max()) == 0.0 or not near.any():
+        near = np.array([y for _, y in others]) - place.point_b
+    sizes = np.linalg.svd(near, compute_uv=False)
+    every = [(p.point_a, p.point_b) for p in places] + others
+    spots = np.array([x for x, _ in every])
+    if float(np.ptp(spots, axis=0).max()) <= float(np.ptp([y for _, y in every], axis=0).max()):
+        spots = np.array([y for _, y in every])
+    if len(sizes) > 1 and sizes[1] > WIDE * sizes[0]:
+        return Continuum("surface", _corners(every, spots))
     straight = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)
-    if straight[1] <= 1e-6 * straight[0]:
-        return Continuum("line", _ends(places, spots))
-    return Continuum("arc", () if _closed(spots) else _ends(places, spots))
+    if len(straight) < 2 or straight[1] <= STRAIGHT * straight[0]:
+        return Continuum("line", _ends(every, spots))
+    return Continuum("arc", () if _closed(spots) else _ends(every, spots))
 
 
-def _ends(places: Sequence[Place], spots: Array) -> tuple[tuple[Array, Array], ...]:
+def _ends(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
     first = int(np.linalg.norm(spots - spots.mean(axis=0), axis=1).argmax())
     last = int(np.linalg.norm(spots - spots[first], axis=1).argmax())
-    return tuple((places[k].point_a, places[k].point_b) for k in (first, last))
+    return tuple(every[k] for k in (first, last))
 
 
-def _corners(places: Sequence[Place], spots: Array) -> tuple[tuple[Array, Array], ...]:
+def _corners(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
     """Those that are farthest from each other, one after the other."""
     chosen = [int(np.linalg.norm(spots - spots.mean(axis=0), axis=1).argmax())]
     away = np.linalg.norm(spots - spots[chosen[0]], axis=1)
@@ -89,7 +136,7 @@ def _corners(places: Sequence[Place], spots: Array) -> tuple[tuple[Array, Array]
             break
         chosen.append(k)
         away = np.minimum(away, np.linalg.norm(spots - spots[k], axis=1))
-    return tuple((places[k].point_a, places[k].point_b) for k in chosen)
+    return tuple(every[k] for k in chosen)
 
 
 def _closed(spots: Array) -> bool:
@@ -99,4 +146,4 @@ def _closed(spots: Array) -> bool:
     flat = (spots - middle) @ axes[:2].T
     angles = np.sort(np.arctan2(flat[:, 1], flat[:, 0]))
     gaps = np.diff(np.concatenate([angles, angles[:1] + 2.0 * np.pi]))
-    return bool(gaps.max() < 1.6)
+    return bool(gaps.max() < OPEN_TURN)

@@ -16,7 +16,21 @@ SMOOTH_JOIN: Final = 2e-7
 """Radians: faces that join smoothly may differ by this in their normals, twice SMOOTH_ANGLE."""
 CONTINUUM_LENGTH: Final = 1e-3
 """Of the sizes: nearest pairs spread less than this are one."""
-"""(see `standoff.solids.spatial.ties`)"""
 SAME_PAIR: Final = 1e-6
 """Of the sizes: pairs of points nearer to each other than this are one, found twice."""
-"""(Newton's method stops where a step no longer lessens the distance, at a root of a rounding)"""
+DIRECTED: Final = 1e-9
+"""Of the sizes: witness points nearer than this have no direction with seven digits; a face's
+normal takes its place."""
+OPPOSED: Final = 1e-3
+"""Length of a sum of unit normals below which it tells no side."""
+STILL: Final = 1e-6
+"""Length of a sum of unit gradients below which it leads nowhere."""
+COLLAPSED_FRAME: Final = 1e-6
+"""Part of a vector across another below which it gives no direction."""
+SAME_BASIN: Final = 1e-2
+"""Of the sizes: a pair this near to a nearer one lies in the same valley, cut at the side of
+a leaf."""
+VALLEY: Final = 1e-14
+"""Of the sizes: pairs that differ by less in their distance are as near as each other."""
+STRAIGHT: Final = 1e-6
+"""Of its length: a continuum that bends less is a line."""

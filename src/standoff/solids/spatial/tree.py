@@ -26,11 +26,14 @@ def packed_leaves(boundary: PackedParts) -> tuple[NDArray[np.int64], Array, list
     """(ints, reals, leaves) of a boundary, laid out as in ``kernels.solids.spatial_layout``."""
     leaves, pieces = all_leaves(boundary)
     nodes = _grown(leaves)
-    ints, reals, lists = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER), []
-    leaf_rows, leaf_reals = [], []
+    ints, reals = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER)
+    lists: list[int] = []
+    leaf_rows: list[int] = []
+    leaf_reals: list[Array] = []
     for leaf in leaves:
-        leaf_rows += [leaf.dim, leaf.feature, leaf.chart, int(leaf.cut), leaf.senses, len(lists),
-                      len(leaf.pieces), leaf.kind]  # fmt: skip
+        place = len(lists) if leaf.dim == 2 else leaf.beside
+        leaf_rows += [leaf.dim, leaf.feature, leaf.chart, int(leaf.cut), leaf.senses, place]
+        leaf_rows += [len(leaf.pieces), leaf.kind]
         lists += leaf.pieces
         leaf_reals.append(leaf.reals)
     node_rows = [n for node in nodes for n in (node.left, node.right,

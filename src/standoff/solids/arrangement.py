@@ -61,13 +61,13 @@ class PartsAnswer:
 
 
 @dataclass(frozen=True, eq=False)
-class Assembly:
+class Arrangement:
     """Parts at fixed places.
 
     Parameters
     ----------
     parts : mapping of str to Solid, Boundary or Body, or of these with a pose
-        By name, in their order; a part without a pose stands in the assembly's frame.
+        By name, in their order; a part without a pose stands in the common frame.
     title : str
     unit : str
         Label of lengths.
@@ -92,7 +92,7 @@ class Assembly:
                 self.parts,
             )
         if not self.parts:
-            raise StandoffError("An assembly needs parts.", "parts", self.parts)
+            raise StandoffError("An arrangement needs parts.", "parts", self.parts)
         placed = {str(name): _placed(str(name), given) for name, given in self.parts.items()}
         object.__setattr__(self, "shapes", {name: shape for name, (shape, _) in placed.items()})
         object.__setattr__(self, "poses", {name: pose for name, (_, pose) in placed.items()})
@@ -120,7 +120,7 @@ class Assembly:
         """
         for name in names:
             if name not in self.shapes:
-                raise StandoffError(f"The assembly has no part {shown(name)}.", "names", names)
+                raise StandoffError(f"There is no part {shown(name)}.", "names", names)
         a, b = names
         found = distance(
             self.shapes[a], self.shapes[b], self.poses[a], self.poses[b], within=within
@@ -129,7 +129,7 @@ class Assembly:
 
     def distances(
         self, within: float = math.inf, progress: Progress | None = None
-    ) -> AssemblyAnswer:
+    ) -> ArrangementAnswer:
         """Ask all pairs.
 
         Parameters
@@ -158,10 +158,10 @@ class Assembly:
                     near[names] = answer
             if progress is not None:
                 progress(k + 1, len(pairs))
-        return AssemblyAnswer(self, near, far, within)
+        return ArrangementAnswer(self, near, far, within)
 
     def _box(self, name: str) -> tuple[Array, Array]:
-        """(low, high) of a part's box in the assembly's frame, grown by roundoff."""
+        """(low, high) of a part's box in the common frame, grown by roundoff."""
         body, pose = self.bodies[name], self.poses[name]
         centre = np.asarray(pose.apply(body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3][None]))[0]
         reach = np.abs(pose.rotation) @ body.reals[L.BOX_HALF : L.BOX_HALF + 3] + body.radius
@@ -174,12 +174,12 @@ BOX_ROUNDINGS = 16.0
 
 
 @dataclass(frozen=True)
-class AssemblyAnswer:
-    """What is known of all pairs of an assembly.
+class ArrangementAnswer:
+    """What is known of all pairs.
 
     Attributes
     ----------
-    assembly : Assembly
+    arrangement : Arrangement
     near : mapping of (str, str) to PartsAnswer
         The pairs within the horizon.
     far : mapping of (str, str) to float
@@ -188,7 +188,7 @@ class AssemblyAnswer:
         The horizon.
     """
 
-    assembly: Assembly
+    arrangement: Arrangement
     near: Mapping[tuple[str, str], PartsAnswer]
     far: Mapping[tuple[str, str], float]
     within: float
@@ -207,13 +207,13 @@ class AssemblyAnswer:
         for each in (names, names[::-1]):
             if each in self.near:
                 return self.near[each]
-        return self.assembly.distance(names)
+        return self.arrangement.distance(names)
 
 
 def _placed(name: str, given: Any) -> tuple[Any, Pose]:
     shape, pose = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
     if isinstance(shape, Boundary) and not isinstance(shape, Body):
-        from standoff.solids.spatial import Solid
+        from standoff.solids.spatial.solid import Solid
 
         shape = Solid(shape)
     if not isinstance(shape, Body | Queried):

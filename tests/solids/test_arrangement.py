@@ -15,7 +15,7 @@ from standoff.clearance.page import page_of
 from standoff.clearance.report import Looked, Wanted
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import StandoffError
-from standoff.solids import Assembly
+from standoff.solids import Arrangement
 
 
 def at(x: float, y: float, z: float) -> so.Pose:
@@ -23,9 +23,9 @@ def at(x: float, y: float, z: float) -> so.Pose:
 
 
 @pytest.fixture(scope="module")
-def assembly() -> Assembly:
+def assembly() -> Arrangement:
     """A bolt in a plate's hole with 0.1 of play, a ring around it, a ball inside the plate."""
-    return Assembly(
+    return Arrangement(
         {
             "plate": (plate_with_hole(8.0, 1.0, 1.1), at(0.0, 0.0, 1.0)),
             "bolt": (bolt(1.0, 2.0, 3.0, 4.0), at(0.0, 0.0, -0.5)),
@@ -38,13 +38,11 @@ def assembly() -> Assembly:
     )
 
 
-def test_every_pair_has_its_answer(assembly: Assembly) -> None:
+def test_every_pair_has_its_answer(assembly: Arrangement) -> None:
     answer = assembly.distances(within=10.0)
     assert answer.certified
     assert len(answer.near) + len(answer.far) == 10
-    assert {names for names in answer.far} == {
-        (n, "far") for n in ("plate", "bolt", "ring", "ball")
-    }
+    assert set(answer.far) == {(n, "far") for n in ("plate", "bolt", "ring", "ball")}
     assert all(bound > 10.0 for bound in answer.far.values())
     bolt_in_plate = answer["plate", "bolt"]
     assert bolt_in_plate.distance == pytest.approx(0.1, abs=1e-9)
@@ -54,7 +52,7 @@ def test_every_pair_has_its_answer(assembly: Assembly) -> None:
     assert answer["ball", "plate"].distance == pytest.approx(0.3, abs=1e-9)
 
 
-def test_the_report_has_every_verdict(assembly: Assembly) -> None:
+def test_the_report_has_every_verdict(assembly: Arrangement) -> None:
     report = assembly_report(assembly.distances(within=10.0), Wanted(0.15, None))
     found = {row.names: row for row in report.rows}
     inside = found["plate", "ball"]
@@ -67,7 +65,7 @@ def test_the_report_has_every_verdict(assembly: Assembly) -> None:
     assert report.tally()[Verdict.CONTAINED] == 1
 
 
-def test_a_part_inside_another_is_no_fit_that_is_meant(assembly: Assembly) -> None:
+def test_a_part_inside_another_is_no_fit_that_is_meant(assembly: Arrangement) -> None:
     fits = (Fit("plate", "ball", 1.0, "meant"),)
     report = assembly_report(assembly.distances(within=1.0), Wanted(None, fits))
     (inside,) = [row for row in report.rows if row.verdict is Verdict.CONTAINED]
@@ -75,7 +73,7 @@ def test_a_part_inside_another_is_no_fit_that_is_meant(assembly: Assembly) -> No
     assert not report.fits[0].holds
 
 
-def test_the_page_names_and_draws_the_parts(assembly: Assembly) -> None:
+def test_the_page_names_and_draws_the_parts(assembly: Arrangement) -> None:
     report = assembly_report(assembly.distances(within=10.0), Wanted(0.05, None))
     file = AssemblyFile(Path("assembly.step"), assembly.title, assembly.unit)
     text = page_of(file, report, Looked(0.0, 0.0, 1))  # type: ignore[arg-type]
@@ -86,12 +84,12 @@ def test_the_page_names_and_draws_the_parts(assembly: Assembly) -> None:
 
 def test_bad_parts_are_refused() -> None:
     with pytest.raises(TypeError, match="mapping"):
-        Assembly([so.shapes.sphere(1.0)])  # type: ignore[arg-type]
+        Arrangement([so.shapes.sphere(1.0)])  # type: ignore[arg-type]
     with pytest.raises(StandoffError, match="needs parts"):
-        Assembly({})
+        Arrangement({})
     with pytest.raises(TypeError, match="Part 'a' is 3"):
-        Assembly({"a": 3})
-    two = Assembly({"a": so.shapes.sphere(1.0), "b": so.shapes.sphere(2.0)})
+        Arrangement({"a": 3})
+    two = Arrangement({"a": so.shapes.sphere(1.0), "b": so.shapes.sphere(2.0)})
     with pytest.raises(StandoffError, match="no part 'c'"):
         two.distance(("a", "c"))
     with pytest.raises(StandoffError, match="within"):

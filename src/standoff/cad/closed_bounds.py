@@ -1,0 +1,78 @@
+"""How far the image of a trimming curve may be from its edge, in closed form.
+
+Where both are lines, the difference is affine and greatest at an end. Where both turn once with the
+same parameter, it is a cos t + b sin t + c, found from three values. In a plane, it is that of the
+control points.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.geometry.curves import ConicArc, Curve, Line
+from standoff.geometry.nurbs_curves import NurbsCurve
+from standoff.geometry.nurbs_pcurves import NurbsPcurve
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+
+AFFINE = np.array([0.0, 0.0, 1.0])
+ROUND_KINDS = {L.CYLINDER: (0,), L.CONE: (0,), L.TORUS: (0, 1), L.REVOLUTION: (0,)}
+"""Parameters that are angles on which points depend by a sine and a cosine."""
+RULED_KINDS = {L.CYLINDER: (1,), L.CONE: (1,), L.EXTRUSION: (1,), L.PLANE: (0, 1)}
+"""Parameters on which points depend affinely."""
+
+
+def closed_bound(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
+    """A bound over the whole edge, length, up to rounding; None where there is no closed form."""
+    if surface.kind == L.PLANE:
+        return _in_plane(pcurve, curve, surface)
+    if pcurve.kind != L.LINE or not np.array_equal(pcurve.matrix[2], AFFINE):
+        return None
+    slopes = np.abs(pcurve.matrix[:2, 0])
+    axis = int(slopes[1] > slopes[0])
+    if slopes[1 - axis] != 0.0:
+        return None
+    if isinstance(curve, Line) and axis in RULED_KINDS.get(surface.kind, ()):
+        ends = (_away(pcurve, curve, surface, t) for t in (curve.first, curve.last))
+        return float(max(np.linalg.norm(x) for x in ends))
+    if isinstance(curve, ConicArc) and axis in ROUND_KINDS.get(surface.kind, ()):
+        if slopes[axis] != 1.0:
+            return None
+        at, quarter, half = (
+            _away(pcurve, curve, surface, curve.first + k * 0.5 * np.pi) for k in range(3)
+        )
+        c = 0.5 * (at + half)
+        return _norms(c, 0.5 * (at - half), quarter - c)
+    return None
+
+
+def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
+    u, v, _ = pcurve.point(t)
+    return surface.jet(u, v)[0] - curve.point(t)
+
+
+def _norms(*vectors: Array) -> float:
+    return float(sum(np.linalg.norm(vector) for vector in vectors))
+
+
+def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
+    """Points of a plane are an affine map of (u, v)."""
+    frame = np.column_stack([surface.linear[:, :2], surface.shift])
+    if isinstance(pcurve, NurbsPcurve) and isinstance(curve, NurbsCurve):
+        w = pcurve.matrix[:, 2:]
+        if len(w) != len(curve.control_points) or np.any(pcurve.knots != curve.knots):
+            return None
+        flat = np.column_stack([pcurve.matrix[:, :2] / w, np.ones(len(w))])
+        off = np.linalg.norm(flat @ frame.T - curve.control_points, axis=1)
+        return float(off.max())
+    alike = (L.LINE, Line), (L.CONIC, ConicArc)
+    if not any(pcurve.kind == kind and isinstance(curve, own) for kind, own in alike):
+        return None
+    if not np.array_equal(pcurve.matrix[2], AFFINE):
+        return None
+    away = frame @ pcurve.matrix - curve.basis()
+    if isinstance(curve, Line):
+        return float(max(np.linalg.norm(away @ [t, 0.0, 1.0]) for t in (curve.first, curve.last)))
+    return _norms(*away.T)

@@ -1,0 +1,106 @@
+"""What OpenCASCADE finds about a shape: size, area, volume, tolerances, faults."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from standoff.cad.opencascade import coordinates, explored
+from standoff.cad.tolerances import QUADRATURE
+
+WRONG = (
+    "BRepCheck_SelfIntersectingWire",
+    "BRepCheck_IntersectingWires",
+    "BRepCheck_NotClosed",
+    "BRepCheck_UnorientableShape",
+    "BRepCheck_CollapsedFace",
+)
+"""What no tolerance excuses."""
+
+
+def size_of(shape: Any) -> float:
+    """Diagonal of a box around a shape."""
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+
+    box = Bnd_Box()
+    BRepBndLib.Add_s(shape, box, False)
+    return 0.0 if box.IsVoid() else float(np.sqrt(box.SquareExtent()))
+
+
+def area_of(shape: Any) -> float:
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    found = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, found, QUADRATURE, False)
+    return float(found.Mass())
+
+
+def volume_of(shape: Any) -> float:
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, found, QUADRATURE, False, False)
+    return float(found.Mass())
+
+
+def tolerance_of(shape: Any) -> float:
+    """The greatest tolerance of an edge or a vertex."""
+    from OCP.BRep import BRep_Tool
+
+    parts = [*explored(shape, "edge"), *explored(shape, "vertex")]
+    return max((float(BRep_Tool.Tolerance_s(part)) for part in parts), default=0.0)
+
+
+def faults_of(shape: Any) -> list[str]:
+    """What OpenCASCADE's check finds wrong with shells and faces, by their numbers."""
+    from OCP.BRepCheck import BRepCheck_Analyzer
+
+    analyzer = BRepCheck_Analyzer(shape)
+    if analyzer.IsValid():
+        return []
+    found = []
+    for kind in ("shell", "face"):
+        for number, part in enumerate(explored(shape, kind), 1):
+            if analyzer.IsValid(part):
+                continue
+            names = _statuses(analyzer, part)
+            for wire in explored(part, "wire") if kind == "face" else ():
+                names += _statuses(analyzer, wire)
+                names += [n for e in explored(wire, "edge") for n in _statuses(analyzer, e, wire)]
+            found += [
+                f"{kind} {number}: {name.removeprefix('BRepCheck_')}"
+                for name in sorted(set(names))
+                if name in WRONG
+            ]
+    return found
+
+
+def _statuses(analyzer: Any, part: Any, within: Any = None) -> list[str]:
+    result = analyzer.Result(part)
+    return [] if result is None else [status.name for status in result.Status()]
+
+
+def free_edges(shape: Any) -> list[str]:
+    """Where a shell is open: middles of edges that bound one face."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+
+    users: dict[Any, int] = {}
+    kept: dict[Any, Any] = {}
+    for face in explored(shape, "face"):
+        for edge in explored(face, "edge"):
+            if not BRep_Tool.Degenerated_s(edge):
+                users[hash(edge)] = users.get(hash(edge), 0) + 1
+                kept[hash(edge)] = edge
+    found = []
+    for key, times in users.items():
+        if times == 1:
+            curve = BRepAdaptor_Curve(kept[key])
+            middle = 0.5 * (curve.FirstParameter() + curve.LastParameter())
+            x, y, z = coordinates(curve.Value(middle))
+            found.append(f"({x:.6g}, {y:.6g}, {z:.6g})")
+    return found

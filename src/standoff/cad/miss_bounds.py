@@ -1,0 +1,160 @@
+"""How far the image of a trimming curve may be from its edge: a proven bound.
+
+Between two samples of g(t) = S(p(t)) - C(t), which are h apart, |g| is at most the greater of the
+two plus h² / 8 times the greatest |g''|. Interval arithmetic bounds g'' over each span, where it
+nearly cancels. Spans that leave too much are halved.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from standoff.cad.closed_bounds import closed_bound
+from standoff.cad.polynomial_bounds import polynomial_bound
+from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
+from standoff.geometry.boxes import Boxes
+from standoff.geometry.curves import Curve
+from standoff.geometry.intervals import Interval, cos, interval, sin
+from standoff.geometry.net_bounds import curve_nets
+from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.nurbs_curves import NurbsCurve
+from standoff.geometry.patch_bounds import cut
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+
+# Spans of a piece at first, and how often they are halved at most.
+FIRST_SPANS = 16
+MOST_HALVINGS = 9
+
+
+def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> float:
+    """A bound of |S(p(t)) - C(t)| over an edge, length.
+
+    Parameters
+    ----------
+    pcurve : Pcurve
+        With the edge's parameter.
+    curve : Curve
+    surface : Surface
+    size : float
+        Of the part, length.
+
+    Returns
+    -------
+    float
+        Infinite where the surface has no bounds.
+    """
+    closed = closed_bound(pcurve, curve, surface)
+    if closed is not None:
+        return closed
+    worst = 0.0
+    spans = curve.spans()
+    if isinstance(surface, NurbsSurface) and isinstance(curve, NurbsCurve):
+        proven = polynomial_bound(pcurve, curve, surface)
+        if proven is not None:
+            return proven
+    for piece, first, last in pcurve.pieces(curve.first, curve.last):
+        inside = spans[(spans > first) & (spans < last)]
+        for a, b in pairwise([first, *inside, last]):
+            worst = max(worst, _piece_bound(piece, curve, surface, (float(a), float(b)), size))
+    return worst
+
+
+def _piece_bound(
+    piece: Pcurve, curve: Curve, surface: Surface, over: tuple[float, float], size: float
+) -> float:
+    ts = np.linspace(*over, FIRST_SPANS + 1)
+    low, high = ts[:-1], ts[1:]
+    proven = 0.0
+    for halving in range(MOST_HALVINGS + 1):
+        ends, place = np.unique(np.concatenate([low, high]), return_inverse=True)
+        at = _misses(piece, curve, surface, ends)[place]
+        at = np.maximum(at[: len(low)], at[len(low) :])
+        rest = (high - low) ** 2 / 8.0 * _second(piece, curve, surface, low, high)
+        rest = np.where(np.isnan(rest), np.inf, rest)
+        allowed = max(BOUND_FLOOR * size, BOUND_SHARE * max(float(at.max()), proven))
+        open_ = rest > allowed
+        if halving == MOST_HALVINGS:
+            open_[:] = False
+        proven = max(proven, float((at + rest)[~open_].max(initial=0.0)))
+        if not open_.any():
+            return proven
+        low, high = low[open_], high[open_]
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
+    return proven
+
+
+def _misses(piece: Pcurve, curve: Curve, surface: Surface, ts: Array) -> Array:
+    found = []
+    for t in ts:
+        u, v, _ = piece.point(float(t))
+        found.append(np.linalg.norm(surface.jet(u, v)[0] - curve.point(float(t))))
+    return np.array(found)
+
+
+def _second(piece: Pcurve, curve: Curve, surface: Surface, low: Array, high: Array) -> Array:
+    """(n,) bounds of |g''| over spans of the parameter."""
+    t = Interval(low, high)
+    u, v = _parameters(piece, t)
+    boxes = Boxes(np.stack([u[0].lo, v[0].lo], 1), np.stack([u[0].hi, v[0].hi], 1))
+    _, xu, xv, xuu, xuv, xvv = _jets(surface, boxes)
+    with np.errstate(all="ignore"):
+        total = xuu * u[1] ** 2 + xuv * (u[1] * v[1] * 2.0) + xvv * v[1] ** 2
+        total = total + xu * u[2] + xv * v[2] - curve.jets_over(t)[:, 2]
+        return np.asarray(np.sqrt((total.magnitude**2).sum(axis=0)) * (1.0 + 1e-15))
+
+
+def _parameters(piece: Pcurve, t: Interval) -> tuple[list[Interval], list[Interval]]:
+    """(u, u', u'') and (v, v', v'') over spans of the parameter."""
+    if piece.kind == L.BEZIER:
+        rows = piece.matrix
+        block = np.column_stack([rows[:, :2], np.zeros(len(rows)), rows[:, 2]])
+        given: Any = piece
+        breaks = np.array([given.first, given.last])
+        jets = curve_nets(block[None], breaks, t).jets()[:, [0, 1, 3]]
+        return [jets[0, k] for k in range(3)], [jets[1, k] for k in range(3)]
+    one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
+    c, s = cos(t), sin(t)
+    lines = [(t, zero, one), (one, zero, zero), (zero, zero, zero)]
+    rounds = [(c, s, one), (-s, c, zero), (-c, -s, zero)]
+    columns = lines if piece.kind == L.LINE else rounds
+    a, b, w = (
+        [sum((x * float(m) for x, m in zip(column, row, strict=True)), zero) for column in columns]
+        for row in piece.matrix
+    )
+    return _quotient(a, w), _quotient(b, w)
+
+
+def _quotient(a: list[Interval], w: list[Interval]) -> list[Interval]:
+    value = a[0] / w[0]
+    slope = (a[1] - value * w[1]) / w[0]
+    return [value, slope, (a[2] - slope * w[1] * 2.0 - value * w[2]) / w[0]]
+
+
+def _jets(surface: Surface, boxes: Boxes) -> list[Interval]:
+    """Jets over boxes that breaks may cross: of all parts of each."""
+    u0, u1, v0, v1 = surface.domain
+    rectangles = np.stack([boxes.low[:, 0], boxes.high[:, 0], boxes.low[:, 1], boxes.high[:, 1]], 1)
+    rectangles = np.clip(rectangles, [u0, u0, v0, v0], [u1, u1, v1, v1])
+    if surface.periodic:
+        rectangles[:, 0], rectangles[:, 1] = boxes.low[:, 0], boxes.high[:, 0]
+    parts, owners = cut(rectangles_boxes(rectangles), surface.analytic_breaks())
+    jets = surface.body_jets(parts)
+    shape = (*jets.lo.shape[:2], len(boxes))
+    low, high = np.full(shape, np.inf), np.full(shape, -np.inf)
+    for k in range(shape[0]):
+        for m in range(shape[1]):
+            np.minimum.at(low[k, m], owners, jets.lo[k, m])
+            np.maximum.at(high[k, m], owners, jets.hi[k, m])
+    return [Interval(low[:, m], high[:, m]) for m in range(6)]
+
+
+def rectangles_boxes(rectangles: Array) -> Boxes:
+    """Rows (u0, u1, v0, v1) as boxes."""
+    return Boxes(rectangles[:, [0, 2]], rectangles[:, [1, 3]])

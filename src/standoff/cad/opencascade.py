@@ -1,0 +1,84 @@
+"""The few calls of OpenCASCADE's bindings whose names or types need care."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from standoff.errors import not_installed
+from standoff.geometry.validation import Array
+
+try:
+    import OCP  # noqa: F401
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("OpenCASCADE", "cad"), name=error.name) from error
+
+from OCP.TopAbs import (
+    TopAbs_EDGE,
+    TopAbs_FACE,
+    TopAbs_FORWARD,
+    TopAbs_SHELL,
+    TopAbs_SOLID,
+    TopAbs_VERTEX,
+    TopAbs_WIRE,
+)
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS
+
+KINDS = {
+    "solid": TopAbs_SOLID,
+    "shell": TopAbs_SHELL,
+    "face": TopAbs_FACE,
+    "wire": TopAbs_WIRE,
+    "edge": TopAbs_EDGE,
+    "vertex": TopAbs_VERTEX,
+}
+
+
+def cast(kind: str, shape: Any) -> Any:
+    """A shape as the one it is; version 8 of the bindings dropped the names' endings."""
+    name = kind.capitalize()
+    return (getattr(TopoDS, name, None) or getattr(TopoDS, f"{name}_s"))(shape)
+
+
+def explored(shape: Any, kind: str, outside: str | None = None) -> Iterator[Any]:
+    """The parts of a kind in a shape, in its order; with `outside`, those in no part of that."""
+    found = TopExp_Explorer()
+    if outside is None:
+        found.Init(shape, KINDS[kind])
+    else:
+        found.Init(shape, KINDS[kind], KINDS[outside])
+    while found.More():
+        yield cast(kind, found.Current())
+        found.Next()
+
+
+def forward(shape: Any) -> bool:
+    """Has it the orientation of its geometry?"""
+    return bool(shape.Orientation() == TopAbs_FORWARD)
+
+
+def is_kind(shape: Any, kind: str) -> bool:
+    return bool(shape.ShapeType() == KINDS[kind])
+
+
+def coordinates(p: Any) -> Array:
+    """A point, vector or direction as (3,) or (2,)."""
+    if hasattr(p, "Z"):
+        return np.array([p.X(), p.Y(), p.Z()])
+    return np.array([p.X(), p.Y()])
+
+
+def frame_of(at: Any) -> tuple[Array, Array]:
+    """(axes as columns, origin) of a gp_Ax3 or gp_Ax2."""
+    axes = [coordinates(d) for d in (at.XDirection(), at.YDirection(), at.Direction())]
+    return np.column_stack(axes), coordinates(at.Location())
+
+
+def matrix_of(location: Any) -> Array:
+    """A TopLoc_Location as (4, 4)."""
+    transformation = location.Transformation()
+    rows = [[transformation.Value(i, j) for j in (1, 2, 3, 4)] for i in (1, 2, 3)]
+    return np.array([*rows, [0.0, 0.0, 0.0, 1.0]])

@@ -1,0 +1,236 @@
+"""A solid of OpenCASCADE as vertices, edges and faces of a boundary.
+
+Seams and collapsed edges have no place in a boundary: an angle needs no seam, a sphere no pole. A
+closed edge whose vertex others use, or whose ends meet in a corner, becomes two.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.topology import Apex, Edge, Face
+from standoff.cad.curves import Converted, converted, isoline
+from standoff.cad.opencascade import cast, coordinates, explored, forward
+from standoff.cad.seams import once
+from standoff.cad.sphere_faces import sphere_by_angles, sphere_charts, sphere_sense
+from standoff.cad.surfaces import Carrier, basis_surface, carrier
+from standoff.cad.trims import trim
+from standoff.errors import BodyError, StandoffError
+from standoff.geometry.validation import Array
+
+
+class Refused(StandoffError):
+    """A part that can't be made; the message names the face or edge of the file and the reason."""
+
+
+@dataclass
+class Pieces:
+    """Parts of a boundary, and where they come from.
+
+    Attributes
+    ----------
+    vertices, edges, faces, senses : as for ``Boundary.from_brep``.
+    kinds : of the faces' surfaces.
+    sources : the file's faces.
+    places : numbers of the file's faces, from 1, in its order.
+    trims : how often a trimming curve was "exact", the "file"'s or "fitted".
+    moved : how far a surface was moved at most, length.
+    """
+
+    vertices: list[Array] = field(default_factory=list)
+    edges: list[Edge] = field(default_factory=list)
+    faces: list[Face] = field(default_factory=list)
+    senses: list[int | None] = field(default_factory=list)
+    kinds: list[str] = field(default_factory=list)
+    sources: list[Any] = field(default_factory=list)
+    trims: Counter[str] = field(default_factory=Counter)
+    moved: float = 0.0
+
+
+def pieces_of(solid: Any, size: float, original: Any = None) -> Pieces:
+    """The parts of a solid without seams that an angle can't take (``seams.without_seams``).
+
+    `original` is the solid before; edges that it lacks are isolines of their surfaces.
+
+    Raises
+    ------
+    Refused
+        A curve or surface without an exact form, an edge without a curve, a face without edges.
+    """
+    from OCP.BRepClass3d import BRepClass3d
+
+    outer = BRepClass3d.OuterShell_s(solid)
+    maker = _Maker(solid, size, original)
+    number = 0
+    for shell in explored(solid, "shell"):
+        cavity = not shell.IsSame(outer)
+        for face in explored(shell, "face"):
+            number += 1
+            with_place = f"face {number}"
+            try:
+                maker.add(face, cavity)
+            except Refused as error:
+                raise Refused(f"{with_place}: {error}") from error
+            except BodyError:
+                raise
+            except StandoffError as error:
+                raise Refused(f"{with_place}: {error}") from error
+    return maker.pieces
+
+
+class _Maker:
+    """Makes each edge once, for the two faces that use it."""
+
+    def __init__(self, solid: Any, size: float, original: Any) -> None:
+        from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
+
+        self.pieces = Pieces()
+        self.size = size
+        self.vertex_map, self.edge_map = Shapes(), Shapes()
+        self.given = Shapes()
+        for edge in explored(solid if original is None else original, "edge"):
+            self.given.Add(edge)
+        self.vertex_numbers: dict[int, int] = {}
+        self.made: dict[int, list[tuple[int, Converted]]] = {}
+        self.busy = self._busy_vertices(solid)
+
+    def _vertex_key(self, vertex: Any) -> int:
+        return int(self.vertex_map.Add(vertex))
+
+    def _busy_vertices(self, solid: Any) -> set[int]:
+        """Vertices at which an edge ends that is neither closed, a seam, nor collapsed."""
+        busy = set()
+        for face in explored(solid, "face"):
+            for edge in once(face):
+                a, b = (self._vertex_key(v) for v in _ends(edge))
+                if a != b:
+                    busy |= {a, b}
+        return busy
+
+    def vertex(self, shape: Any) -> int:
+        from OCP.BRep import BRep_Tool
+
+        key = self._vertex_key(shape)
+        if key not in self.vertex_numbers:
+            self.vertex_numbers[key] = len(self.pieces.vertices)
+            self.pieces.vertices.append(coordinates(BRep_Tool.Pnt_s(shape)))
+        return self.vertex_numbers[key]
+
+    def edge(self, shape: Any, flat: Any, surface: Any) -> list[tuple[int, Converted]]:
+        """Numbers of the edges that a file's edge becomes, with their curves, along its curve."""
+        from OCP.BRep import BRep_Tool
+
+        key = int(self.edge_map.Add(shape))
+        if key in self.made:
+            return self.made[key]
+        geometry = BRep_Tool.Curve_s(shape, 0.0, 0.0)
+        if geometry is None:
+            raise Refused("an edge without a curve in space")
+        first, last = BRep_Tool.Range_s(shape)
+        shift = 0.0
+        if not self.given.Contains(shape):
+            line = isoline(flat, surface)
+            if line is not None:
+                geometry, shift = line
+                first, last = first + shift, last + shift
+        start, stop = _ends(shape)
+        keys = (self._vertex_key(start), self._vertex_key(stop))
+        whole = converted(geometry, first, last)
+        found = []
+        if keys[0] != keys[1]:
+            found.append(self._put(whole, self.vertex(start), self.vertex(stop), shift))
+        elif whole.curve.closed and keys[0] not in self.busy:
+            found.append(self._put(whole, None, None, shift))
+        else:
+            middle = 0.5 * (first + last)
+            halves = converted(geometry, first, middle), converted(geometry, middle, last)
+            amid = len(self.pieces.vertices)
+            self.pieces.vertices.append(halves[0].curve.point(halves[0].curve.last))
+            found.append(self._put(halves[0], self.vertex(start), amid, shift))
+            found.append(self._put(halves[1], amid, self.vertex(start), shift))
+        self.made[key] = found
+        return found
+
+    def _put(
+        self, made: Converted, first: int | None, last: int | None, shift: float
+    ) -> tuple[int, Converted]:
+        if shift:
+            made = replace(made, shift=made.shift + made.scale * shift)
+        self.pieces.edges.append(Edge(made.curve, first, last))
+        return len(self.pieces.edges) - 1, made
+
+    def add(self, face: Any, cavity: bool) -> None:
+        from OCP.BRep import BRep_Tool
+        from OCP.BRepTools import BRepTools
+
+        geometry = basis_surface(BRep_Tool.Surface_s(face))
+        over = BRepTools.UVBounds_s(face)
+        on = carrier(geometry, over)
+        uses = once(face)
+        made = [m for e in uses if not BRep_Tool.Degenerated_s(e) for m in self._edges(e, face)]
+        sense = None
+        if on.kind == "sphere":
+            charts, trims = sphere_charts(
+                on.surface, [m.curve for _, m, _, _ in made], face, self.size
+            )
+            if not charts:
+                on = sphere_by_angles(geometry, over)
+            elif len(charts) > 1 and made:
+                sense = sphere_sense(geometry, face) * (-1 if cavity else 1)
+        if on.surface.part_of is None:
+            charts, trims = (on.surface,), []
+            for _, converted_edge, _, flat in made:
+                pcurve, how = trim(converted_edge, on, flat, self.size)
+                trims.append(pcurve)
+                self.pieces.trims[how] += 1
+        apexes = []
+        if on.surface.part_of is None:
+            collapsed = [e for e in uses if BRep_Tool.Degenerated_s(e)]
+            apexes = [self._apex(e, face, on, over) for e in collapsed]
+            if not made and not apexes:
+                raise Refused(f"a {on.kind} without an edge")
+        loop = tuple((number, way) for number, _, way, _ in made)
+        given = tuple(trims) if any(t is not None for t in trims) else ()
+        self.pieces.faces.append(Face(tuple(charts), loop, tuple(apexes), given))
+        self.pieces.senses.append(sense)
+        self.pieces.kinds.append(on.kind)
+        self.pieces.sources.append(face)
+        self.pieces.moved = max(self.pieces.moved, on.moved)
+
+    def _edges(self, edge: Any, face: Any) -> list[tuple[int, Converted, int, Any]]:
+        """(number, curve, sense, the file's trimming curve) of the edges that an edge becomes."""
+        from OCP.BRep import BRep_Tool
+
+        flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
+        sense = 1 if forward(edge) else -1
+        found = self.edge(edge, flat, BRep_Tool.Surface_s(face))
+        return [(number, made, sense, flat) for number, made in found]
+
+    def _apex(self, edge: Any, face: Any, on: Carrier, over: tuple[float, ...]) -> Apex:
+        """A collapsed edge, which must be a side in (u, v)."""
+        from OCP.BRep import BRep_Tool
+
+        flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
+        first, last = BRep_Tool.Range_s(edge, face)
+        ends = on.own(np.array([coordinates(flat.Value(t)) for t in (first, last)]))
+        middle = on.own(0.5 * np.array([[over[0] + over[1], over[2] + over[3]]]))[0]
+        across = int(abs(ends[1, 1] - ends[0, 1]) < abs(ends[1, 0] - ends[0, 0]))
+        level = float(ends[:, across].mean())
+        if on.kind == "cone":
+            level = 0.0
+        lo, hi = sorted(ends[:, 1 - across].tolist())
+        side = ("u", "v")[across] + ("0" if middle[across] > level else "1")
+        return Apex(self.vertex(_ends(edge)[0]), level, lo, hi, side)
+
+
+def _ends(edge: Any) -> tuple[Any, Any]:
+    """First and last vertex along an edge's curve, whatever its orientation in a wire."""
+    from OCP.TopAbs import TopAbs_FORWARD
+    from OCP.TopExp import TopExp
+
+    along = cast("edge", edge.Oriented(TopAbs_FORWARD))
+    return TopExp.FirstVertex_s(along), TopExp.LastVertex_s(along)

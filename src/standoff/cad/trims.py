@@ -1,0 +1,227 @@
+"""Trimming curves of a face, in its own (u, v) and in its edges' own parameters.
+
+They are exact where they are lines, conics or splines in (u, v): from the kinds of curve and
+surface, or as the file has them. Elsewhere they are fitted, and how far they miss their edges is
+bounded in ``miss_bounds``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from standoff.cad.curves import (
+    Converted,
+    NoExactForm,
+    basis_of,
+    interpolated,
+    radii,
+    spline_of,
+)
+from standoff.cad.opencascade import coordinates
+from standoff.cad.surfaces import Carrier
+from standoff.cad.tolerances import CONSTANT, FITTED_TRIM
+from standoff.errors import StandoffError
+from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
+from standoff.geometry.exact_pcurves import pcurve_of
+from standoff.geometry.knots import GREATEST_DEGREE
+from standoff.geometry.nurbs_curves import NurbsCurve
+from standoff.geometry.nurbs_pcurves import NurbsPcurve
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surfaces import Surface
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+
+# How often the spans of a fitted trimming curve are halved at most.
+FIT_HALVINGS = 6
+# A trimming curve is near enough at this many times its edge's own distance from the surface.
+NEAR_ENOUGH = 1.5
+# Points of each span at which a trimming curve is compared with its edge.
+COMPARED = 33
+
+
+def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcurve | None, str]:
+    """The trimming curve of an edge, and how it was made: "exact", "file" or "fitted".
+
+    Parameters
+    ----------
+    edge : Converted
+    on : Carrier
+        Its face's.
+    geometry : Geom2d_Curve or None
+        The file's trimming curve.
+    size : float
+        Of the part, length.
+
+    Returns
+    -------
+    Pcurve or None
+        None where the library finds the exact one by itself.
+    str
+
+    Raises
+    ------
+    NoExactForm
+        There is neither a trimming curve in the file nor a closed form to fit.
+    """
+    curve, surface = edge.curve, on.surface
+    if surface.projection is not None and isinstance(curve, Line | ConicArc):
+        try:
+            pcurve_of(curve, surface)
+        except StandoffError:
+            pass
+        else:
+            return None, "exact"
+    if on.kind == "plane":
+        assert on.inverse is not None
+        assert isinstance(curve, NurbsCurve)
+        flat = on.inverse(curve.control_points)
+        return NurbsPcurve(flat, curve.knots, curve.weights), "exact"
+    found = of_file(geometry, edge, on) if geometry is not None and edge.affine else None
+    if on.inverse is None:
+        if found is None:
+            raise NoExactForm("an edge without a trimming curve on it")
+        return found, "file"
+    enough = NEAR_ENOUGH * off_surface(curve, on) + FITTED_TRIM * size
+    if found is not None and miss(found, curve, surface) <= enough:
+        return found, "file"
+    fitted = fit(curve, on, hint(geometry, edge, on), enough)
+    if found is not None and miss(found, curve, surface) <= miss(fitted, curve, surface):
+        return found, "file"
+    return fitted, "fitted"
+
+
+def off_surface(curve: Curve, on: Carrier) -> float:
+    """How far a curve is from a surface at samples, length: no trimming curve is nearer."""
+    assert on.inverse is not None
+    points = np.array(
+        [curve.point(float(t)) for t in np.linspace(curve.first, curve.last, COMPARED)]
+    )
+    feet = [on.surface.jet(float(u), float(v))[0] for u, v in on.inverse(points)]
+    return float(np.linalg.norm(points - np.array(feet), axis=1).max())
+
+
+def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
+    """The file's own trimming curve, exactly; None where it has no such form."""
+    flat = basis_of(geometry)
+    kind = flat.DynamicType().Name()
+    linear = on.to_own[:, :2]
+    if kind == "Geom2d_Line":
+        start, way = coordinates(flat.Location()), coordinates(flat.Direction())
+        way = linear @ way / edge.scale
+        start = on.own(start[None])[0] - way * edge.shift
+        rows = [[way[0], 0.0, start[0]], [way[1], 0.0, start[1]], [0.0, 0.0, 1.0]]
+        return Pcurve(L.LINE, np.array(rows))
+    if kind in ("Geom2d_Circle", "Geom2d_Ellipse") and edge.scale == 1.0:
+        at = flat.Position()
+        a, b = radii(flat, kind)
+        x, y = linear @ coordinates(at.XDirection()) * a, linear @ coordinates(at.YDirection()) * b
+        c, s = np.cos(edge.shift), np.sin(edge.shift)
+        turned = c * x - s * y, s * x + c * y
+        middle = on.own(coordinates(at.Location())[None])[0]
+        rows = [[turned[0][k], turned[1][k], middle[k]] for k in (0, 1)]
+        return Pcurve(L.CONIC, np.array([*rows, [0.0, 0.0, 1.0]]))
+    if kind in ("Geom2d_BSplineCurve", "Geom2d_BezierCurve"):
+        first, last = edge.own(np.array([edge.curve.first, edge.curve.last]))
+        if flat.Degree() > GREATEST_DEGREE:
+            return _lowered(flat, edge, on)
+        points, knots, weights = spline_of(flat, float(first), float(last))
+        knots = _over(knots * edge.scale + edge.shift, edge.curve)
+        try:
+            found = NurbsPcurve(straightened(on.own(points)), knots, weights)
+            found.pieces(edge.curve.first, edge.curve.last)
+        except StandoffError:  # a cusp, or weights far apart
+            return _lowered(flat, edge, on)
+        return found
+    return None
+
+
+def _over(knots: Array, curve: Curve) -> Array:
+    """Knots that begin and end with a curve, to which they are mapped with rounding."""
+    first, last = knots[0], knots[-1]
+    return np.where(knots == first, curve.first, np.where(knots == last, curve.last, knots))
+
+
+def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
+    """A spline of lower degree near the file's trimming curve."""
+
+    def places(ts: Array) -> Array:
+        return on.own(np.array([coordinates(flat.Value(float(t))) for t in edge.own(ts)]))
+
+    spans = edge.curve.spans()
+    breaks = np.concatenate([np.linspace(a, b, 5)[:-1] for a, b in pairwise(spans)] + [spans[-1:]])
+    found, knots = interpolated(places, breaks)
+    return NurbsPcurve(straightened(found), knots)
+
+
+def straightened(points: Array) -> Array:
+    """Control points whose u, or v, is constant up to roundoff: exactly constant. Else a curve
+    would have an inflection wherever roundoff turns it."""
+    middle = points.mean(axis=0)
+    same = np.ptp(points, axis=0) <= CONSTANT * (1.0 + np.abs(middle))
+    return np.where(same, middle, points)
+
+
+def hint(geometry: Any, edge: Converted, on: Carrier) -> Array | None:
+    """About where the middle of the trimming curve is, which tells the turn of its angles."""
+    if geometry is None:
+        return None
+    if edge.affine:
+        t = float(edge.own(np.array([0.5 * (edge.curve.first + edge.curve.last)]))[0])
+    else:
+        t = 0.5 * (geometry.FirstParameter() + geometry.LastParameter())
+    if not np.isfinite(t) or abs(t) > 1e50:
+        return None
+    return on.own(coordinates(geometry.Value(t))[None])[0]
+
+
+def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPcurve:
+    """A polynomial trimming curve through the parameters of a curve's points, its spans halved
+    until it is near enough, length."""
+    assert on.inverse is not None
+    inverse = on.inverse
+
+    def places(ts: Array) -> Array:
+        uv = inverse(np.array([curve.point(float(t)) for t in ts]))
+        for k in (0, 1):
+            if on.angles[k]:
+                uv[:, k] = np.unwrap(uv[:, k])
+        return uv
+
+    breaks = np.array([curve.first, curve.last])
+    found = None
+    for _ in range(FIT_HALVINGS):
+        found = _fitted(places, breaks, on.angles, near)
+        if miss(found, curve, on.surface) <= enough:
+            break
+        breaks = np.sort(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
+    assert found is not None
+    return found
+
+
+def _fitted(
+    places: Callable[[Array], Array],
+    breaks: Array,
+    angles: tuple[bool, bool],
+    near: Array | None,
+) -> NurbsPcurve:
+    points, knots = interpolated(places, breaks)
+    if near is not None:
+        turns = FULL_TURN * np.round((near - points[len(points) // 2]) / FULL_TURN)
+        points = points + np.where(angles, turns, 0.0)
+    return NurbsPcurve(straightened(points), knots)
+
+
+def miss(pcurve: Pcurve, curve: Curve, surface: Surface) -> float:
+    """The greatest distance, at samples, of a trimming curve's image from its edge."""
+    worst = 0.0
+    ends = curve.spans()
+    for a, b in pairwise(ends):
+        for t in np.linspace(a, b, COMPARED):
+            u, v, _ = pcurve.point(float(t))
+            away = surface.jet(u, v)[0] - curve.point(float(t))
+            worst = max(worst, float(np.linalg.norm(away)))
+    return worst
