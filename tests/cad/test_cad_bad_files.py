@@ -137,7 +137,7 @@ def test_one_refused_part_refuses_all_unless_asked(tmp_path: Path) -> None:
 def test_options_are_checked(tmp_path: Path) -> None:
     path = made.write_step(made.box(1, 2, 3), tmp_path / "box.step")
     for options in ({"unit": "furlong"}, {"keep": "some"}):
-        with pytest.raises(so.StandoffError, match="give one of|give 'all'"):
+        with pytest.raises(so.StandoffError, match=r"give one of|give 'all'"):
             so.read_step(path, **options)
     with pytest.raises(TypeError, match="give True or False"):
         so.read_step(path, heal="yes")  # type: ignore[arg-type]
