@@ -5,8 +5,9 @@ Run from the repository's root:
 - ``python -m benchmarks.certify paths --paths 1000 [--samples 100000] [--seed 1]``: random trees of
   joints on random straight paths, each judged by many samples of an oracle with other kinematics
   and closed-form distances (``tests/robots/path_oracle.py``); half of them graze the clearance.
-- ``python -m benchmarks.certify robots --paths 20 [--samples 10000]``: real robots, each path
-  judged by Pinocchio's kinematics with Coal's distances.
+- ``python -m benchmarks.certify arms --paths 20 [--samples 10000] [--seed 1]``: the same for real
+  arms among a pole, a ball and a crate, judged by Pinocchio with Coal, and by MuJoCo
+  (``tests/robots/real_arms.py``).
 - ``python -m benchmarks.certify speed``: arms of seven joints among obstacles, certified, and
   beside it the same path sampled at 1 kHz.
 - ``python -m benchmarks.certify boxes``: the share of a box that is proven, against time, for two
@@ -20,7 +21,6 @@ import sys
 import time
 from collections import Counter
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,9 @@ sys.path.insert(0, str(TESTS))
 BLOCK = 10_000
 """Samples that the oracle takes at once."""
 
+FEW = 60
+"""Samples that tell whether a path is worth judging."""
+
 SAMPLED_WITHIN = 0.05
 """The horizon of the sampled path [m]: farther pairs are only bounded."""
 
@@ -41,12 +44,6 @@ CLEARANCE = 5e-3
 
 ORACLE = 1e-11
 """Accuracy of the oracle's distances [length]."""
-
-REAL = ("panda", "allegro right", "a1", "anymal c", "laikago", "quadruped")
-"""Robots of packages whose geometries are exact, with 12 to 28 joints but for the arm's 9."""
-
-COAL = 3e-6
-"""By how much Coal was seen to miss a distance [m]: `benchmarks.robots` finds up to 2.2e-6."""
 
 
 def paths(count: int, samples: int, seed: int) -> int:
@@ -108,66 +105,43 @@ def paths(count: int, samples: int, seed: int) -> int:
     return wrong
 
 
-class RealPaths(NamedTuple):
-    """What came of one robot's paths."""
+def arms(count: int, samples: int, seed: int) -> int:
+    """Judge proofs of paths of real arms; the number of wrong ones."""
+    sys.path.insert(0, str(TESTS / "robots"))
+    from real_arms import ACCURACY, ARMS, arm, sampled, wrong_in
 
-    verdicts: Counter[str]
-    wrong: list[str]
-    taken: list[float]
-
-
-def real_paths(name: str, count: int, samples: int, rng: np.random.Generator) -> RealPaths:
-    """Judge proofs of one robot: the clearance is a little less, or more, than the least met."""
-    from benchmarks.robots import Coal
-    from robots import robot_models
     from standoff.robots.proof import Verdict
 
-    robot = robot_models.exact_robot(name)
-    names = robot.geoms.names
-    bodies = robot.distances(robot_models.drawn(robot, rng)).bodies
-    coal = Coal(name, [(names[i], names[j]) for i, j in bodies.tolist()])
-    found = RealPaths(Counter(), [], [])
-    while len(found.taken) < count:
-        ends = robot_models.drawn(robot, rng), robot_models.drawn(robot, rng)
-        part = rng.uniform(0.1, 1.0)
-        points = np.array([ends[0], ends[0] + part * (ends[1] - ends[0])])
-        if coal.distances(points[0]).min() < CLEARANCE:
-            continue
-        times = np.linspace(0.0, 1.0, samples)
-        q = points[0] + times[:, None] * (points[1] - points[0])
-        least = np.array([coal.distances(each).min() for each in q])
-        margin = (1e-4, -1e-4, 1e-2, -1e-2)[len(found.taken) % 4]
-        clearance = max(0.0, float(least.min()) - margin)
-        begin = time.perf_counter()
-        proof = robot.certify(points, clearance)
-        found.taken.append(time.perf_counter() - begin)
-        found.verdicts[proof.verdict.name] += 1
-        until = times <= proof.time if proof.verdict is Verdict.PROVEN else times < proof.time
-        bad = bool((least[until] < clearance - COAL).any())
-        if proof.verdict is Verdict.PROVEN:
-            bad |= bool(least.min() < proof.proven - COAL)
-        if proof.verdict is Verdict.VIOLATED:
-            bad |= bool(coal.distances(proof.witness.q).min() > clearance + COAL)
-        if bad:
-            found.wrong.append(f"{name}, path {len(found.taken)}: {proof}")
-    return found
-
-
-def robots(count: int, samples: int, seed: int) -> int:
-    """Judge many proofs of real robots; the number of wrong ones."""
-    wrong = 0
-    tell("| robot | paths | proven | violated | undecided | wrong | median, ms | most, ms |")
-    tell("|---|---|---|---|---|---|---|---|")
-    for name in REAL:
-        found = real_paths(name, count, samples, np.random.default_rng(seed))
-        wrong += len(found.wrong)
-        shares = [found.verdicts[v] for v in ("PROVEN", "VIOLATED", "UNDECIDED")]
-        cells = [name, count, *shares, len(found.wrong)]
-        cells += [f"{x * 1e3:.0f}" for x in (np.median(found.taken), np.max(found.taken))]
-        tell("| " + " | ".join(map(str, cells)) + " |")
-        for line in found.wrong:
-            tell(f"WRONG: {line}")
-    return wrong
+    tell("| arm | pairs | paths | proven | violated | undecided | wrong | samples | ms |")
+    tell("|---|---|---|---|---|---|---|---|---|")
+    total = 0
+    for name in ARMS:
+        judged, rng = arm(name), np.random.default_rng(seed)
+        verdicts: Counter[Verdict] = Counter()
+        wrong, taken = 0, []
+        while sum(verdicts.values()) < count:
+            points = judged.path(rng)
+            if sampled(judged, points, FEW).least.min() < 1e-3:
+                continue
+            seen = sampled(judged, points, samples)
+            margin = float(rng.choice([-2.0 * ACCURACY, 2.0 * ACCURACY, -1e-3, 1e-3]))
+            if seen.least.min() - abs(margin) < 0.0:
+                continue
+            begin = time.perf_counter()
+            proof = judged.robot.certify(points, seen.least.min() - margin)
+            taken.append(time.perf_counter() - begin)
+            verdicts[proof.verdict] += 1
+            said = wrong_in(proof, judged, points, seen)
+            if said:
+                wrong += 1
+                tell(f"WRONG: {name}, seed {seed}, path {len(taken)}: {said}: {proof}")
+        each = " | ".join(str(verdicts[verdict]) for verdict in Verdict)
+        tell(
+            f"| {name} | {len(judged.pairs)} | {count} | {each} | {wrong} | {samples} | "
+            f"{np.median(taken) * 1e3:.0f} |"
+        )
+        total += wrong
+    return total
 
 
 def quicken() -> None:
@@ -304,15 +278,15 @@ def tell(text: str) -> None:
 def main() -> int:
     """Run one of the measurements."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=["paths", "robots", "speed", "boxes"])
+    parser.add_argument("what", choices=["paths", "arms", "speed", "boxes"])
     parser.add_argument("--paths", type=int, default=1000)
-    parser.add_argument("--samples", type=int, default=100_000)
+    parser.add_argument("--samples", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     if given.what == "paths":
-        return 1 if paths(given.paths, given.samples, given.seed) else 0
-    if given.what == "robots":
-        return 1 if robots(given.paths, given.samples, given.seed) else 0
+        return 1 if paths(given.paths, given.samples or 100_000, given.seed) else 0
+    if given.what == "arms":
+        return 1 if arms(given.paths, given.samples or 10_000, given.seed) else 0
     if given.what == "speed":
         speed(20, given.seed)
     else:

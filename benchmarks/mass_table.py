@@ -32,9 +32,9 @@ def relative(found: MassProperties, size: float) -> list[float]:
 
 def main() -> None:
     sys.path.insert(0, str(CASES))
-    import solids  # type: ignore[import-not-found]
     from mass_cases import CASES as known  # type: ignore[import-not-found]
 
+    import solids  # type: ignore[import-not-found]
     import standoff as so
 
     cases = {name: case for name, case in known.items() if name not in LEFT_OUT}

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from standoff.points import PointTracker
     from standoff.recording import Recording, open_recording, track
     from standoff.robots import Robot
+    from standoff.solids import PlanarSolid
     from standoff.tracking import (
         Event,
         Feature,
@@ -82,6 +83,7 @@ else:
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "track"),
             "standoff.robots": ("Robot",),
+            "standoff.solids": ("PlanarSolid",),
             "standoff.view": ("view",),
             "standoff.world": ("World", "compound"),
         },
@@ -113,6 +115,7 @@ __all__ = [
     "Event",
     "Feature",
     "PaperLaw",
+    "PlanarSolid",
     "PointTracker",
     "Pose",
     "Poses",

@@ -41,6 +41,28 @@ def test_not_proven(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert set(steps["how"]) <= {"FAR", "REACH", "CHORD"}
 
 
+SWING = """<mujoco><worldbody>
+<geom name="grazed" type="sphere" size="0.05" pos="1.105 0 0"/>
+<geom name="hit" type="sphere" size="0.05" pos="0 1 0"/>
+<body><joint name="turn" axis="0 0 1"/><geom name="tip" type="sphere" size="0.05" pos="1 0 0"/>
+</body></worldbody></mujoco>"""
+"""A ball that passes another at 5 mm exactly, and then meets a third."""
+
+
+def test_an_undecided_instant_is_told_before_the_violation(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    model, path = tmp_path / "swing.xml", tmp_path / "swing.csv"
+    model.write_text(SWING, "utf-8")
+    for end, verdict, pair in ((2.0, "VIOLATED", "hit"), (1.0, "UNDECIDED", "grazed")):
+        path.write_text(f"turn\n-0.5\n{end}\n", "utf-8")
+        assert run(model, path, "--clearance", "0.005") == 3
+        said = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+        assert said["verdict"] == verdict
+        assert pair in said["pair"]
+        assert said["undecided"].startswith("grazed and tip from ")
+
+
 def test_columns_in_any_order_and_without_names(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

@@ -113,7 +113,13 @@ def test_each_pair_has_its_verdict_and_its_gap(standoff: Standoff, scene: Path) 
     assert found["ball", "pair_of_balls"]["pieces"] == ["", "left"]
     # A depth is proven to the thousandth.
     assert found["ball", "pair_of_balls"]["upper_bound"] <= -0.999 * 0.25
-    assert facts["verdicts"] == {"OVERLAPPING": 1, "UNDECIDED": 0, "TOUCHING": 1, "APART": 4}
+    assert facts["verdicts"] == {
+        "OVERLAPPING": 1,
+        "UNDECIDED": 0,
+        "TOUCHING": 1,
+        "APART": 4,
+        "CONTAINED": 0,
+    }
     assert facts["clearance"] == pytest.approx(-0.25, abs=1e-10)
     assert (facts["certified"], facts["holds"]) == (True, True)
     assert (facts["start"], facts["end"], facts["frames"]) == (0.0, 0.0, 1)

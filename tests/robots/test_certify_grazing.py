@@ -8,6 +8,7 @@ import pytest
 import standoff as so
 from robots.path_oracle import Judged, drawn_judged, least_distances
 from robots.trees import robot_of
+from standoff.robots import certify
 from standoff.robots.proof import Verdict
 
 CLEARANCE = 5e-3
@@ -93,43 +94,73 @@ def test_exactly_the_clearance_is_not_decided(case: object) -> None:
     assert proof.witness is not None
     assert proof.time < proof.end
     assert str(proof).startswith("UNDECIDED")
-    assert all(proof.start <= a < b <= proof.end for a, b in proof.undecided)
-    assert proof.undecided[0][0] == proof.time
 
 
-def test_behind_an_undecided_touch_a_violation_is_found() -> None:
-    """A first post is passed at exactly the clearance, a second one too close."""
-    turned = 0.7
-    far = np.array([np.cos(turned), np.sin(turned), 0.0])
+def past_posts(gaps: list[float]) -> tuple[object, np.ndarray]:
+    """A ball on an arm of length 1 that passes fixed balls at least distances `gaps`."""
+    posts = {}
+    for k, gap in enumerate(gaps):
+        away = 1.1 + gap
+        posts[f"post {k}"] = (BALL, moved(away * np.cos(k), away * np.sin(k), 0))
     robot = robot_of(
-        [1],
-        [-1],
-        [np.eye(4)],
-        [[0, 0, 1.0]],
-        [(0, BALL, moved(1, 0, 0))],
-        fixed={
-            "post": (BALL, moved(1.1 + CLEARANCE, 0, 0)),
-            "second": (BALL, moved(*((1.1 + CLEARANCE - 1e-4) * far))),
-        },
+        [1], [-1], [np.eye(4)], [[0, 0, 1.0]], [(0, BALL, moved(1, 0, 0))], fixed=posts
     )
-    proof = robot.certify(np.array([[-0.9], [1.1]]), CLEARANCE, max_steps=20_000)
+    return robot, np.array([[-0.5], [len(gaps) - 0.5]])
+
+
+@pytest.mark.parametrize("batch", [4, 2048])
+def test_a_violation_behind_an_undecided_instant_is_found(
+    batch: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(certify, "BATCH", batch)
+    robot, path = past_posts([CLEARANCE, 1.0, CLEARANCE - 1e-6, -0.1])
+    proof = robot.certify(path, CLEARANCE)
     assert proof.verdict is Verdict.VIOLATED
-    assert "second" in proof.witness.names
-    assert proof.latest == pytest.approx(0.8, abs=1e-2)
-    (first, *_, last) = proof.undecided
-    assert first[0] == proof.time
-    assert first[0] < 0.45 < first[1] + 1e-3
-    assert first[1] - first[0] < 1e-2
-    assert last[1] <= proof.latest
+    assert "post 2" in proof.witness.names
+    (span,) = proof.undecided
+    assert "post 0" in span.names
+    assert span.start == proof.time < 0.125 < span.end < 0.126
+    assert proof.latest == pytest.approx(0.625, abs=1e-3)
+    between = np.linspace(span.end, 0.62, 50)
+    assert (proof.steps.clearance(between) > CLEARANCE).all()
+    assert np.isnan(proof.steps.clearance(np.array([0.125])))
+    assert "undecided: " in str(proof)
+    assert proof.as_dict()["undecided"][0]["end"] == span.end
 
 
-def test_a_slide_at_the_clearance_ends_within_a_bounded_number_of_steps() -> None:
-    robot, path = sliding(CLEARANCE)
+@pytest.mark.parametrize("batch", [4, 2048])
+def test_all_undecided_instants_are_listed(batch: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(certify, "BATCH", batch)
+    robot, path = past_posts([CLEARANCE, 1.0, CLEARANCE, 1.0])
     proof = robot.certify(path, CLEARANCE)
     assert proof.verdict is Verdict.UNDECIDED
-    assert proof.counts.tried < 100_000  # two million without a bound
-    assert proof.undecided == ((0.0, 1.0),)
-    assert "1 span, 1 s in all" in str(proof)
+    assert not proof
+    for span, at in zip(proof.undecided, (0.125, 0.625), strict=True):
+        assert span.start < at < span.end
+    assert proof.time == proof.undecided[0].start
+    assert "and 1 more" in str(proof)
+    open_ = np.isnan(proof.steps.clearance(np.linspace(0.0, 1.0, 10_001)))
+    assert 1 <= open_.sum() < 10
+
+
+def test_a_pair_at_the_clearance_all_the_time_ends_soon() -> None:
+    robot, path = sliding(0.25)
+    proof = robot.certify(path, 0.25)
+    assert proof.verdict is Verdict.UNDECIDED
+    (span,) = proof.undecided
+    assert (span.start, span.end) == (0.0, 1.0)
+    assert proof.counts.tried < 100_000
+
+
+def test_what_the_budget_leaves_is_listed() -> None:
+    robot, path = past_posts([CLEARANCE, CLEARANCE + 1e-3, CLEARANCE + 1e-3])
+    proof = robot.certify(path, CLEARANCE, max_steps=20)
+    assert proof.verdict is Verdict.UNDECIDED
+    times = np.linspace(0.0, 1.0, 1000)
+    within = np.zeros(len(times), dtype=bool)
+    for span in proof.undecided:
+        within |= (times >= span.start) & (times <= span.end)
+    assert np.array_equal(np.isnan(proof.steps.clearance(times)), within)
 
 
 def test_the_steps_of_a_grazing_path_grow_with_the_digits_alone() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -324,3 +326,31 @@ def test_the_report_is_a_table_of_all_geometries() -> None:
     assert [row.name for row in report.geoms][:4] == ["floor", "post", "trunk", "seen only"]
     assert report.pairs == tuple(robot.pairs)
     assert any("without limits: turn" in note for note in report.notes)
+
+
+@pytest.mark.parametrize(
+    ("package", "module", "extra"),
+    [
+        ("mujoco", "mujoco", "mujoco"),
+        ("mujoco", "mujoco_contacts", "mujoco"),
+        ("mujoco", "mujoco_sensor", "mujoco"),
+        ("pinocchio", "urdf", "pinocchio"),
+        ("pinocchio", "pinocchio", "pinocchio"),
+        ("coal", "pinocchio", "pinocchio"),
+        ("casadi", "casadi_functions", "casadi"),
+        ("mink", "mink_limit", "mink"),
+        ("pink", "pink_barrier", "pink"),
+        ("qpsolvers", "safety_filter", "qp"),
+    ],
+)
+def test_a_package_that_is_not_installed_is_told_with_its_extra(
+    package: str, module: str, extra: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    used = tuple(f"standoff.robots.{name}" for name in ("mujoco", "pinocchio", "urdf", module))
+    for name in [name for name in sys.modules if name.startswith((*used, "standoff.casadi"))]:
+        monkeypatch.delitem(sys.modules, name)
+    # its own modules too, which another test may have imported
+    for name in {package, *(name for name in sys.modules if name.startswith(f"{package}."))}:
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ModuleNotFoundError, match=rf"pip install 'standoff\[{extra}\]'"):
+        importlib.import_module(f"standoff.robots.{module}")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import solids
-from solids import Solid
 
+import solids
 import standoff as so
+from solids import Solid
 from standoff.geometry import BezierPatch, ConicArc, ellipsoid_patches
 
 SHAPES = so.shapes

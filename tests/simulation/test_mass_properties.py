@@ -7,11 +7,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-import solids
 from mass_cases import CASES, CLOUD, TETRAHEDRON, rounded_cylinder
-from solids import Solid
 
+import solids
 import standoff as so
+from solids import Solid
 from standoff.bodies.moments import boundary
 from standoff.bodies.moments.cells import Cell
 from standoff.bodies.moments.flux import Frame

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.spatial
-import solids
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+import solids
 import standoff as so
 from families import curved_shapes, formula_bodies, nurbs_bodies, shapes, swept_bodies
 from families.shapes import Maker, Twin

@@ -220,3 +220,49 @@ def test_bounds_hold_what_composing_poses_has_lost(rng: np.random.Generator) -> 
                 assert Decimal(found.lower_bound) <= true <= Decimal(found.upper_bound)
                 lost += abs(Decimal(found.distance) - true) > Decimal("1e-13")
     assert lost > 10
+
+
+def test_derivatives_are_those_of_the_nearest_pieces_by_the_bodies_motions() -> None:
+    """Against differences of the gradient in the chart R <- exp(omega) R, p <- p + v."""
+    egg, lens = so.shapes.ellipsoid(0.3, 0.2, 0.25), so.shapes.ellipsoid(0.2, 0.1, 0.15)
+    dumbbell = so.compound(
+        {
+            "near": (egg, so.Pose.exp([0.2, 0.1, 0.4], [0.5, 0.2, -0.1])),
+            "far": (egg, so.Pose(np.eye(3), [-0.5, 0.0, 0.0])),
+        }
+    )
+    other = so.compound({"only": (lens, so.Pose.exp([0.5, 0.2, 0.1], [-0.3, 0.1, 0.2]))})
+    world = so.World({"a": dumbbell, "b": other})
+    poses = [so.Pose.exp([0.1, 0.3, -0.2], [0.1, 0.0, 0.0])]
+    poses.append(so.Pose.exp([-0.3, 0.1, 0.4], [1.6, 0.4, 0.1]))
+
+    def moved(k: int, way: float) -> list[so.Pose]:
+        turn, shift = np.zeros(3), np.zeros(3)
+        (shift if k % 6 < 3 else turn)[k % 3] = way
+        found = list(poses)
+        old = poses[k // 6]
+        found[k // 6] = so.Pose(
+            so.Pose.exp(turn).rotation @ old.rotation, np.asarray(old.translation) + shift
+        )
+        return found
+
+    def gap(at: list[so.Pose]) -> so.world.PairAnswer:
+        return world.distances(at)["a", "b"]
+
+    found, h = gap(poses).derivatives(), 1e-4
+    assert found.smoothness is so.tracking.Smoothness.SMOOTH
+    hessian, normal, points = np.empty((12, 12)), np.empty((3, 12)), np.empty((2, 3, 12))
+    for k in range(12):
+        sides = [gap(moved(k, s * h)) for s in (1, -1)]
+        assert found.gradient[k] == pytest.approx(
+            (sides[0].distance - sides[1].distance) / (2 * h), abs=1e-7
+        )
+        normal[:, k] = (sides[0].normal - sides[1].normal) / (2 * h)
+        points[0, :, k] = (sides[0].point_a - sides[1].point_a) / (2 * h)
+        points[1, :, k] = (sides[0].point_b - sides[1].point_b) / (2 * h)
+        hessian[k, k] = (sides[0].distance - 2 * gap(poses).distance + sides[1].distance) / h**2
+    np.testing.assert_allclose(found.normal_jacobian, normal, atol=1e-6)
+    np.testing.assert_allclose(found.point_jacobians, points, atol=1e-6)
+    np.testing.assert_allclose(np.diag(found.hessian), np.diag(hessian), atol=1e-6)
+    np.testing.assert_allclose(found.hessian, found.hessian.T, atol=1e-12)
+    np.testing.assert_array_equal(gap(poses).hessian, found.hessian)

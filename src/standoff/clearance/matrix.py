@@ -43,6 +43,9 @@ FAR_COLOUR, FAR_HATCH, LEFT_OUT_COLOUR = "#EDEDED", "////", "white"
 COLOURS = "YlGnBu_r"
 """Of the gaps: dark is near. Okabe and Ito's orange, vermilion and purple are not among them."""
 
+WORDS = {Verdict.TOUCHING: "touch", Verdict.CONTAINED: "inside"}
+"""Written in a cell in place of the gap."""
+
 DARK = 0.45
 """Brightness of a cell below which its number is white."""
 
@@ -161,8 +164,8 @@ def _draw_cell(
         )
     if written:
         text = f"≥{at_least(cell.gap, 3)}" if cell.far else f"{cell.gap:.3g}"
-        if cell.verdict is Verdict.TOUCHING:
-            text = "touch"
+        if cell.verdict in WORDS:
+            text = WORDS[cell.verdict]
         if cell.allowed and not cell.fails and cell.verdict is not Verdict.APART:
             text += "\nallowed"
         box = {"facecolor": FAR_COLOUR, "edgecolor": "none", "pad": 0.5} if cell.far else None
@@ -190,6 +193,7 @@ def _colour(cell: Cell, scale: Normalize) -> tuple[object, bool]:
         Verdict.OVERLAPPING: OVERLAP_COLOUR,
         Verdict.UNDECIDED: UNDECIDED_COLOUR,
         Verdict.TOUCHING: TOUCH_COLOUR,
+        Verdict.CONTAINED: OVERLAP_COLOUR,
     }
     return colours[cell.verdict], False
 
@@ -218,6 +222,7 @@ def _legend(cells: Iterable[Cell], n: int) -> list[Artist]:
         (Verdict.OVERLAPPING, OVERLAP_COLOUR, "overlapping; minus the depth"),
         (Verdict.UNDECIDED, UNDECIDED_COLOUR, "undecided"),
         (Verdict.TOUCHING, TOUCH_COLOUR, "touching"),
+        (Verdict.CONTAINED, OVERLAP_COLOUR, "one inside the other's material"),
     ):
         if verdict in some:
             entries.append(Patch(facecolor=colour, label=label))

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.plain_data import without_roundoff
+from standoff.clearance.assembly import PartsAtRest
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
 from standoff.clearance.report import Looked, Report, Row, Wanted, at_least, nearest_of, report_on
@@ -39,7 +40,7 @@ th, td { text-align: left; padding: 0.3rem 0.7rem; border-bottom: 1px solid #ddd
 td.number, th.number { text-align: right; }
 td.note { white-space: normal; min-width: 14rem; }
 .mark { padding: 0.1rem 0.45rem; border-radius: 0.3rem; font-weight: 600; font-size: 0.8rem; }
-.OVERLAPPING { background: #D55E00; color: #fff; } .UNDECIDED { background: #CC79A7; }
+.OVERLAPPING, .CONTAINED { background: #D55E00; color: #fff; } .UNDECIDED { background: #CC79A7; }
 .TOUCHING { background: #E69F00; } .APART { background: #CFE8F7; }
 .fails { background: #FDF1E7; } .summary { font-size: 1.05rem; }
 img { max-width: 100%; height: auto; } footer { color: #666; margin-top: 2rem; font-size: 0.85rem; }
@@ -60,8 +61,16 @@ def page_of(scene: Scene, report: Report, looked: Looked) -> str:
     at, shown = _pictured(scene, report, looked)
     poses = _poses(scene, report, at)
     unit = scene.length_unit
+    world: Any = report.world
+    if isinstance(world, PartsAtRest):
+        from standoff.clearance.assembly_picture import assembly_figure
+
+        first = ("The parts", "the worst pairs numbered", assembly_figure(shown, unit))
+    else:
+        picture = world_figure(shown, poses, unit)
+        first = (f"The bodies at {at:g} s", "the worst pairs numbered", picture)
     figures = [
-        (f"The bodies at {at:g} s", "the worst pairs numbered", world_figure(shown, poses, unit)),
+        first,
         ("All pairs", "as a matrix", matrix_figure(report, scene.title, unit)),
     ]
     title = escape(printable(scene.title))

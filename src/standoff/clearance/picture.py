@@ -102,8 +102,8 @@ def world_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure
     else:
         _draw_spatial(figure, parts, looks, rows, unit)
     look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
-    figure.legend(handles=_bodies_legend(coloured), loc="lower left", ncols=2, **look)
-    figure.legend(handles=_pairs_legend(rows, unit), loc="lower right", **look)
+    figure.legend(handles=bodies_legend(coloured), loc="lower left", ncols=2, **look)
+    figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
     return figure
 
 
@@ -253,11 +253,11 @@ def _draw_planar(
     axes.grid(alpha=0.3)
 
 
-def _bodies_legend(coloured: Sequence[str]) -> list[Artist]:
+def bodies_legend(coloured: Sequence[str]) -> list[Artist]:
     return [Patch(facecolor=colour_of(name, coloured), label=short_name(name)) for name in coloured]
 
 
-def _pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
+def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
     handles: list[Artist] = []
     for number, row in enumerate(rows, 1):
         a, b = (short_name(name) for name in row.names)

@@ -218,7 +218,11 @@ def report_on(
         for names, bound in bounds.items()
     ]
     far.sort(key=lambda each: (not each.failure, each.bound))
-    lowest = [row.nearest.lower_bound for row in rows] + [each.bound for each in far]
+    # a part inside another's material keeps no clearance, however thick the wall
+    lowest = [
+        -math.inf if row.verdict is Verdict.CONTAINED else row.nearest.lower_bound for row in rows
+    ]
+    lowest += [each.bound for each in far]
     notes = tuple(_note(world, fit, rows, far) for fit in wanted.fits or ())
     clearance = min(lowest, default=math.inf)
     return Report(world, tuple(rows), tuple(far), notes, wanted.least, clearance)
@@ -240,7 +244,10 @@ def _row(world: World, nearest: Nearest, wanted: Wanted, fits: Mapping[frozenset
     verdict, required = verdict_of(nearest.answer), _required(world, names, wanted)
     fit, lower = fits.get(frozenset(names)), nearest.lower_bound
     failure = ""
-    if fit is not None:
+    if verdict is Verdict.CONTAINED:
+        if fit is not None or required is not None or wanted.fits is not None:
+            failure = f"inside the other's material, the wall at least {at_least(lower)} thick"
+    elif fit is not None:
         if -lower > fit.depth + touching_tolerance(nearest.answer):
             failure = f"up to {-lower:.6g} deep, and {fit.depth:g} is allowed"
     elif required is not None and lower < required:

@@ -15,6 +15,7 @@ class Verdict(Ordered):
     UNDECIDED = 1
     TOUCHING = 2
     APART = 3
+    CONTAINED = 4
 
     @property
     def meaning(self) -> str:
@@ -30,6 +31,9 @@ _MEANING = {
     ),
     Verdict.TOUCHING: "The gap or depth is within the touching tolerance of 0.",
     Verdict.APART: "The bodies are proven to be apart.",
+    Verdict.CONTAINED: (
+        "One is wholly inside the other's material; the gap is the least wall around it."
+    ),
 }
 
 
@@ -49,6 +53,8 @@ def verdict_of(answer: PairAnswer) -> Verdict:
     """Return the verdict on a pair."""
     if answer.far:
         return Verdict.APART
+    if getattr(answer, "inside", ""):
+        return Verdict.CONTAINED
     tolerance = touching_tolerance(answer)
     lower, upper = answer.lower_bound, answer.upper_bound
     if -tolerance <= lower and upper <= tolerance:

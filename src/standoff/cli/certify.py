@@ -29,6 +29,9 @@ from standoff.robots.proof import How, PathProof
 from standoff.robots.robot import Robot
 from standoff.scene import SceneError, load_scene
 
+MOST_SPANS = 8
+"""Undecided spans that are printed; the JSON has all."""
+
 
 def run_certify(command: CertifyCommand) -> int:
     """Print what is proven of a path; the exit code says whether it is all of it.
@@ -147,8 +150,11 @@ def _lines(
             f"pair      {a} ({link_a}) - {b} ({link_b})",
             f"          {proof.witness.distance:.9g} apart at {at:.9g} s",
             "q         " + " ".join(f"{number:.9g}" for number in proof.witness.q),
-            f"advice    {proof.verdict.advice}",
         ]
+        lines += [f"undecided {span}" for span in proof.undecided[:MOST_SPANS]]
+        if len(proof.undecided) > MOST_SPANS:
+            lines.append(f"          and {len(proof.undecided) - MOST_SPANS} more")
+        lines.append(f"advice    {proof.verdict.advice}")
     counts = proof.counts
     lines.append(
         f"took      {counts.steps} steps, {counts.configurations} configurations, "

@@ -27,6 +27,9 @@ from standoff.scene import Scene, SceneError, load_scene
 from standoff.scene.reader import Array
 from standoff.world import World
 
+CAD_ENDINGS = (".step", ".stp", ".brep", ".brp", ".iges", ".igs")
+"""Of files of assemblies; others are scenes."""
+
 
 def run_clearance(command: ClearanceCommand) -> int:
     """Print the clearance of all pairs; the exit code says whether all that is asked is proven.
@@ -39,6 +42,10 @@ def run_clearance(command: ClearanceCommand) -> int:
         If the files could not be written after all.
     """
     _check(command)
+    if command.scene.suffix.lower() in CAD_ENDINGS:
+        from standoff.cli.clearance_assembly import run_on_assembly
+
+        return run_on_assembly(command, _check_files)
     scene = load_scene(command.scene).as_world
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     times = scene.times() if command.motion else None

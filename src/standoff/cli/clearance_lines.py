@@ -30,6 +30,7 @@ POINT_DIGITS = 5
 
 STYLES = {
     Verdict.OVERLAPPING: "bold red",
+    Verdict.CONTAINED: "bold red",
     Verdict.UNDECIDED: "bold magenta",
     Verdict.TOUCHING: "yellow",
     Verdict.APART: "",

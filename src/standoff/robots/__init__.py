@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from standoff.robots.mujoco_sensor import MujocoSensor
     from standoff.robots.paths import FunctionPath
     from standoff.robots.pink_barrier import PinkBarrier
-    from standoff.robots.proof import BoxProof, PathProof, Verdict, Witness
+    from standoff.robots.proof import BoxProof, PathProof, Span, Verdict, Witness
     from standoff.robots.report import GeomReport, RobotReport
     from standoff.robots.robot import Robot
     from standoff.robots.rows import RobotRows
@@ -32,7 +32,7 @@ else:
             "standoff.robots.joints": ("JointKind", "Joints"),
             "standoff.robots.kinematics": ("Kinematics",),
             "standoff.robots.paths": ("FunctionPath",),
-            "standoff.robots.proof": ("BoxProof", "PathProof", "Verdict", "Witness"),
+            "standoff.robots.proof": ("BoxProof", "PathProof", "Span", "Verdict", "Witness"),
             "standoff.robots.mink_limit": ("MinkLimit",),
             "standoff.robots.mujoco_contacts": ("MujocoContacts",),
             "standoff.robots.mujoco_sensor": ("MujocoSensor",),
@@ -65,6 +65,7 @@ __all__ = [
     "RobotRows",
     "SafeVelocity",
     "SafetyFilter",
+    "Span",
     "Verdict",
     "Witness",
     "casadi_distance",

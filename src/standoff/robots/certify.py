@@ -16,12 +16,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.numbers import not_negative, whole_number
 from standoff.progress import Progress
-from standoff.robots.certify_tolerances import (
-    ASKED_CLEARANCE,
-    BRACKET,
-    OPEN_STEP,
-    SHORTEST_STEP,
-)
+from standoff.robots.certify_tolerances import ASKED_CLEARANCE, BRACKET, SHORTEST_STEP
 from standoff.robots.intervals import Intervals, joined, lowest, spans_of, steps_of
 from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import bends, least_speed, seen_from
@@ -109,11 +104,13 @@ class _Search:
         self.doubt = sight.roundoff(
             begin, self.gone[-1], latest, float(self.speeds.max(initial=0.0))
         )
+        self.least = SHORTEST_STEP * (path.end - path.start)
         self.tried = 0
         self.violation: tuple[float, int, Apart] | None = None
         self.proven: list[tuple[Intervals, Array, How]] = []
+        self.brackets: list[Intervals] = []
         self.stuck: list[Intervals] = []
-        self.doubtful = np.zeros(sight.pairs, dtype=bool)
+        self.vague = np.zeros(sight.pairs, dtype=bool)
 
     def _check_kinematics(self) -> None:
         """Hold the joints as read against the package: bounds alone may prove a whole path."""
@@ -151,10 +148,9 @@ class _Search:
         )
 
     def _before_the_end(self, waiting: Intervals) -> Intervals:
-        """What lies before the first instant that is known to be bad."""
-        if self.violation is None:
-            return waiting
-        return waiting.some(waiting.first < self.violation[0])
+        """What begins before the first instant that is known to be bad."""
+        end = math.inf if self.violation is None else self.violation[0]
+        return waiting.some(waiting.first < end)
 
     # --- some intervals -----------------------------------------------------------------------
 
@@ -329,15 +325,16 @@ class _Search:
             self.violation = float(times[k]), int(pairs[k]), one
 
     def _split(self, left: Intervals) -> Intervals:
-        """Parts of what is left; what is too short is put aside."""
+        """Parts of what is left; what is too short is put aside. Of a pair that has undecided
+        instants the proof is lost: only a violation is sought on, by longer steps."""
         known = left.after[:, 1] + self.doubt < self.clearance
-        share = np.where(self.doubtful[left.pairs], OPEN_STEP, SHORTEST_STEP)
-        share[known] = BRACKET
-        short = left.last - left.first <= share * (self.path.end - self.path.start)
+        long = known | self.vague[left.pairs]
+        short = left.last - left.first <= np.where(long, BRACKET / SHORTEST_STEP, 1.0) * self.least
         short &= left.pieces[:, 1] - left.pieces[:, 0] == 1
         if short.any():
-            self.stuck.append(left.some(short))
-            self.doubtful[left.pairs[short & ~known]] = True
+            self.brackets.append(left.some(short & known))
+            self.stuck.append(left.some(short & ~known))
+            self.vague[self.stuck[-1].pairs] = True
             left = left.some(~short)
         for _ in range(1 if len(left.pairs) > FEW else DEEPER):
             left = self._halved(left)
@@ -358,8 +355,9 @@ class _Search:
         )
 
     def _answer(self, waiting: Intervals) -> PathProof:
-        open_ = joined([*self.stuck, waiting])
-        steps = steps_of(self.proven, [self.sight.names(k) for k in range(self.sight.pairs)])
+        vague = self._before_the_end(joined([*self.stuck, waiting]))
+        names = [self.sight.names(k) for k in range(self.sight.pairs)]
+        steps = steps_of(self.proven, names)
         counts = PathCounts(
             self.sight.pairs,
             len(steps.start),
@@ -367,7 +365,7 @@ class _Search:
             self.sight.configurations,
             self.sight.queries,
         )
-        time, latest, witness = self._end(open_)
+        time, latest, witness = self._end(joined([*self.brackets, vague]))
         verdict = Verdict.PROVEN
         if witness is not None:
             verdict = Verdict.UNDECIDED if self.violation is None else Verdict.VIOLATED
@@ -379,8 +377,8 @@ class _Search:
             time=time,
             latest=latest,
             witness=witness,
+            undecided=spans_of(vague, names, self.path.end if math.isnan(latest) else latest),
             proven=float(steps.bound.min(initial=math.inf)) if witness is None else math.nan,
-            undecided=spans_of(open_, self.path.end if self.violation is None else latest),
             counts=counts,
             steps=steps,
         )

@@ -32,10 +32,6 @@ SHORTEST_STEP: Final = 1e-6
 """Share of a path's duration: shorter steps are not tried, and the path is undecided there. A dip
 of d below the clearance lasts for about √d: one of 1e-9 is found."""
 
-OPEN_STEP: Final = 1e-3
-"""Share of a path's duration: where a pair is undecided, its other steps are not tried shorter than
-this, so that a pair that slides along at the clearance costs a thousand steps and not a million."""
-
 BRACKET: Final = 1e-4
 """Share of a path's duration between an instant up to which all is proven and one at which a pair
 is proven to be nearer than the clearance: halving it once more costs as much as a step."""

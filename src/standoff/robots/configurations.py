@@ -74,3 +74,15 @@ class Configurations:
             made[part] /= length
         made.flags.writeable = False
         return made
+
+
+def made_unit(joints: Joints, q: Array) -> Array:
+    """The configuration with quaternions, and (cos, sin), scaled to length 1, however long; a part
+    that is zero stays so."""
+    found = np.array(q, dtype=float)
+    for kind, at in zip(joints.kinds, joints.q_at, strict=True):
+        if JointKind(kind) in UNIT_PARTS:
+            first, end, _ = UNIT_PARTS[JointKind(kind)]
+            part = slice(int(at) + first, int(at) + end)
+            found[part] /= float(np.linalg.norm(found[part])) or 1.0
+    return found

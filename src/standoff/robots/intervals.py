@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.robots.proof import How, Names, Steps
+from standoff.robots.proof import How, Names, Span, Steps
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -59,6 +59,20 @@ def joined(parts: Sequence[Intervals]) -> Intervals:
     return Intervals(*(np.concatenate(each) for each in zip(*parts, strict=True)))
 
 
+def spans_of(some: Intervals, names: Sequence[Names], end: float) -> tuple[Span, ...]:
+    """Intervals up to an end; those of two bodies that follow each other are one."""
+    found: list[Span] = []
+    owners = [names[pair] for pair in some.pairs.tolist()]
+    for own, first, last in sorted(
+        zip(owners, some.first.tolist(), some.last.tolist(), strict=True)
+    ):
+        if found and found[-1].names == own and first <= found[-1].end:
+            found[-1] = found[-1]._replace(end=max(min(last, end), found[-1].end))
+        else:
+            found.append(Span(first, min(last, end), own))
+    return tuple(sorted(found))
+
+
 def steps_of(proven: Sequence[tuple[Intervals, Array, How]], names: Sequence[Names]) -> Steps:
     """The steps of a proof: intervals, their bounds, and what proved them."""
     rows = [(some, bound, how) for some, bound, how in proven if len(bound)]
@@ -80,17 +94,3 @@ def steps_of(proven: Sequence[tuple[Intervals, Array, How]], names: Sequence[Nam
     for array in found[:5]:
         array.flags.writeable = False
     return found
-
-
-def spans_of(left: Intervals, end: float) -> tuple[tuple[float, float], ...]:
-    """The spans of time that intervals cover before an end, in order and without a common part."""
-    found: list[tuple[float, float]] = []
-    for k in np.argsort(left.first, kind="stable"):
-        first, last = float(left.first[k]), min(float(left.last[k]), end)
-        if first >= end:
-            break
-        if found and first <= found[-1][1]:
-            found[-1] = found[-1][0], max(found[-1][1], last)
-        else:
-            found.append((first, last))
-    return tuple(found)

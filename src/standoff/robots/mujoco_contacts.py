@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError, not_installed
-from standoff.robots.mujoco import MujocoKinematics
 from standoff.robots.mujoco_mixing import Mixed, mixed
 from standoff.robots.mujoco_pairs import watched_pairs
+from standoff.robots.mujoco_robot import model_of, watched
+from standoff.robots.mujoco_step import stepped
 from standoff.robots.near import Near
 from standoff.robots.report import GIVEN
 from standoff.robots.robot import Robot
@@ -30,30 +31,6 @@ Array = NDArray[np.float64]
 
 POINTED = ("sphere", "ellipsoid")
 """Kinds that touch any convex body at one point."""
-
-POSITION = (
-    mujoco.mj_checkPos,
-    mujoco.mj_checkVel,
-    mujoco.mj_kinematics,
-    mujoco.mj_comPos,
-    mujoco.mj_camlight,
-    mujoco.mj_flex,
-    mujoco.mj_tendon,
-    mujoco.mj_makeM,
-    mujoco.mj_factorM,
-)
-"""What a step of MuJoCo does before its contacts."""
-
-VELOCITY = (
-    mujoco.mj_makeConstraint,
-    mujoco.mj_island,
-    mujoco.mj_transmission,
-    mujoco.mj_projectConstraint,
-    mujoco.mj_sensorPos,
-    mujoco.mj_fwdVelocity,
-    mujoco.mj_sensorVel,
-)
-"""And between them and the control."""
 
 
 class MujocoContacts:
@@ -164,69 +141,7 @@ class MujocoContacts:
         ValueError
             The model asks for RK4, which makes contacts within a step.
         """
-        if self.model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
-            raise StandoffError(
-                "The model's integrator is RK4, within whose steps no contact can be given: set "
-                "contacts.model.opt.integrator to Euler, implicit or implicitfast.",
-                "integrator",
-            )
-        for work in (*POSITION, mujoco.mj_collision):
-            work(self.model, data)
-        self(data)
-        for work in VELOCITY:
-            work(self.model, data)
-        if self.model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_ENERGY:
-            mujoco.mj_energyPos(self.model, data)
-            mujoco.mj_energyVel(self.model, data)
-        control = mujoco.get_mjcb_control()
-        if control is not None:
-            control(self.model, data)
-        mujoco.mj_step2(self.model, data)
-
-
-def model_of(robot: Robot) -> tuple[Any, list[int]]:
-    """The MuJoCo model of a robot, and the number in it of each of the robot's geometries.
-
-    Raises
-    ------
-    StandoffError
-    """
-    if not isinstance(robot.kinematics, MujocoKinematics):
-        raise StandoffError(
-            f"The robot is one of {robot.loaded.source}: make it by so.Robot.from_mujoco.", "robot"
-        )
-    if robot.obstacles:
-        raise StandoffError(
-            f"The obstacles {', '.join(robot.obstacles)} are no geoms of the MuJoCo model, and "
-            "nothing of it can touch them: write them into the model.",
-            "robot",
-        )
-    at = {report.name: k for k, report in enumerate(robot.loaded.reports)}
-    return robot.kinematics.model, [at[name] for name in robot.geoms.names]
-
-
-def watched(robot: Robot, pairs: Sequence[tuple[str, str]]) -> list[tuple[int, int]]:
-    """Numbers i < j of the robot's geometries, of pairs given by names.
-
-    Raises
-    ------
-    StandoffError
-        A pair that the robot does not watch.
-    """
-    names = robot.geoms.names
-    known = {frozenset(pair) for pair in robot.pairs}
-    found = []
-    for pair in pairs:
-        if frozenset(pair) not in known:
-            raise StandoffError(
-                f"The robot does not watch the pair {tuple(pair)}: robot.pairs has those that it "
-                "does.",
-                "pairs",
-                pair,
-            )
-        i, j = sorted(names.index(name) for name in pair)
-        found.append((i, j))
-    return found
+        stepped(self.model, data, self)
 
 
 def _smooth(robot: Robot) -> list[tuple[int, int]]:

@@ -8,11 +8,16 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import not_installed
 from standoff.robots.tolerances import LEAST_FRICTION
+
+try:
+    import mujoco
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
 
 Array = NDArray[np.float64]
 

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
+
+from standoff.errors import not_installed
+
+try:
+    import mujoco
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
 
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from standoff.errors import StandoffError, not_installed
-from standoff.robots.mujoco_contacts import model_of, watched
+from standoff.robots.mujoco_robot import model_of, watched
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
 

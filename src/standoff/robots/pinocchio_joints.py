@@ -6,12 +6,16 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
-from standoff.errors import StandoffError
+from standoff.errors import StandoffError, not_installed
 from standoff.robots.joints import JointKind, Joints
 from standoff.robots.tolerances import UNLIMITED
+
+try:
+    import pinocchio as pin
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import coal
 import numpy as np
 from numpy.typing import NDArray
+
+from standoff.errors import not_installed
+
+try:
+    import coal
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -122,6 +122,25 @@ class Witness(NamedTuple):
         return f"{self.names[0]} and {self.names[1]}, {self.distance:.6g} apart"
 
 
+class Span(NamedTuple):
+    """Of a path, for one pair.
+
+    Attributes
+    ----------
+    start, end : float
+        [s].
+    names : (str, str)
+        Of the two bodies.
+    """
+
+    start: float
+    end: float
+    names: Names
+
+    def __str__(self) -> str:
+        return f"{self.names[0]} and {self.names[1]} from {self.start:.9g} to {self.end:.9g} s"
+
+
 class PathCounts(NamedTuple):
     """What a proof took.
 
@@ -163,12 +182,11 @@ class PathProof(KeepsReadOnly, PlainData):
         VIOLATED: an instant at which a pair is proven to be nearer [s]; else nan.
     witness : Witness or None
         The pair that is nearer at ``latest``, or that is not decided at ``time``; None if PROVEN.
+    undecided : tuple of Span
+        Where a pair is neither proven to keep the clearance nor to be nearer, in order of time; if
+        VIOLATED, before ``latest``.
     proven : float
         PROVEN: no pair is nearer than this at any instant [length]; else nan.
-    undecided : tuple of (float, float)
-        Spans of time before ``latest``, or before the end, in which some pair is proven neither
-        to keep the clearance nor to be nearer [s]. A span that ends at ``latest`` leads up to the
-        violation.
     counts : PathCounts
     steps : Steps
     """
@@ -180,8 +198,8 @@ class PathProof(KeepsReadOnly, PlainData):
     time: float
     latest: float
     witness: Witness | None
+    undecided: tuple[Span, ...]
     proven: float
-    undecided: tuple[tuple[float, float], ...]
     counts: PathCounts
     steps: Steps
 
@@ -202,7 +220,6 @@ class PathProof(KeepsReadOnly, PlainData):
             f"{counted(counts.queries, 'distance')}"
         )
         span = f"{self.start:.6g} to {self.end:.6g} s"
-        open_for = math.fsum(last - first for first, last in self.undecided)
         if self.verdict is Verdict.PROVEN:
             return (
                 f"PROVEN: every pair keeps {self.clearance:.6g} at every instant from {span}; "
@@ -211,12 +228,21 @@ class PathProof(KeepsReadOnly, PlainData):
         if self.verdict is Verdict.VIOLATED:
             return (
                 f"VIOLATED: {self.witness} at {self.latest:.9g} s, less than "
-                f"{self.clearance:.6g}; proven until {self.time:.9g} s of {span} ({took})"
+                f"{self.clearance:.6g}; proven until {self.time:.9g} s of {span}{self._open} "
+                f"({took})"
             )
         return (
-            f"UNDECIDED: {self.witness} at {self.time:.9g} s; proven until there, of {span}; "
-            f"open in {counted(len(self.undecided), 'span')}, {open_for:.3g} s in all ({took})"
+            f"UNDECIDED: {self.witness} at {self.time:.9g} s; proven until there, of {span}"
+            f"{self._open} ({took})"
         )
+
+    @property
+    def _open(self) -> str:
+        """What is undecided, for the text."""
+        if not self.undecided:
+            return ""
+        more = len(self.undecided) - 1
+        return f"; undecided: {self.undecided[0]}" + (f" and {more} more" if more else "")
 
     def __repr__(self) -> str:
         return f"PathProof({self.verdict.name}, proven until {self.time:.9g} of {self.end:.9g} s)"

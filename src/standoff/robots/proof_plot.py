@@ -16,6 +16,7 @@ SAMPLES = 1000
 """Times at which the proven clearance is drawn, besides the ends of the steps."""
 
 COLOURS = {How.FAR: "#b9cfe4", How.REACH: "#e0a458", How.CHORD: "#3b6ea5"}
+UNDECIDED = "#cc79a7"
 TOLD = {
     How.FAR: "by bounding boxes",
     How.REACH: "from the middle",
@@ -60,6 +61,8 @@ def proof_figure(
         at = proof.time if np.isnan(proof.latest) else proof.latest
         for axes in (above, below):
             axes.axvline(at, color="#b3261e", lw=1.0)
+            for span in proof.undecided:
+                axes.axvspan(span.start, span.end, color=UNDECIDED, lw=1.0, alpha=0.4)
     below.set_yticks(
         range(len(rows)), [" - ".join(steps.names[pair]) for pair in rows.tolist()], fontsize=7
     )
@@ -70,6 +73,8 @@ def proof_figure(
         PolyCollection([], facecolor=colour, label=f"proven {TOLD[how]}")
         for how, colour in COLOURS.items()
     ]
+    if proof.undecided:
+        handles.append(PolyCollection([], facecolor=UNDECIDED, alpha=0.4, label="undecided"))
     ncols = len(handles) if width >= WIDE else 1
     figure.legend(
         handles=handles, loc="outside lower center", ncols=ncols, fontsize=8, frameon=False

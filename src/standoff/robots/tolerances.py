@@ -30,3 +30,11 @@ size, no unit: what is about to touch starts warm. The contacts do not depend on
 
 LEAST_FRICTION = 1e-5
 """MuJoCo's mjMINMU, a coefficient of friction, no unit: it makes a lesser one this."""
+
+TIED = 1e-10
+"""Distances of two pairs of pieces that differ by less, length, are one: their roundoff, where the
+bodies are not greater than some metres."""
+
+TIED_APART = 1e-7
+"""Part of 1 and the greatest derivative by which those of two equally near pairs of pieces may
+differ: their roundoff, where these are one smooth surface in two pieces."""

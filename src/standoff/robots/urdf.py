@@ -8,16 +8,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import pinocchio as pin
-
 from standoff.checks.names import one_of
 from standoff.checks.numbers import yes_or_no
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError
+from standoff.errors import StandoffError, StandoffTypeError, not_installed
 from standoff.robots.loaded import Loaded
 from standoff.robots.pinocchio import assembled
 from standoff.robots.shapes import MOST_NAMED, Meshes
 from standoff.robots.urdf_meshes import stand_ins
+
+try:
+    import pinocchio as pin
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 FOLDERS_ABOVE = 6
 """Folders above the file in which ``package://`` is sought too: ROS packages are no deeper."""

@@ -12,7 +12,11 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
+    from standoff.solids.arrangement import Arrangement, ArrangementAnswer, PartsAnswer
     from standoff.solids.boundary_file import open_boundary, save_boundary
+    from standoff.solids.planar.dxf import read_dxf
+    from standoff.solids.planar.solid import PlanarSolid
+    from standoff.solids.query import distance
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -24,16 +28,26 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
+            "standoff.solids.arrangement": ("Arrangement", "ArrangementAnswer", "PartsAnswer"),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
+            "standoff.solids.planar.dxf": ("read_dxf",),
+            "standoff.solids.planar.solid": ("PlanarSolid",),
+            "standoff.solids.query": ("distance",),
         },
     )
 
 __all__ = [
+    "Arrangement",
+    "ArrangementAnswer",
     "Continuum",
     "NearestPair",
     "Overlap",
+    "PartsAnswer",
+    "PlanarSolid",
     "SolidCounts",
     "SolidProximity",
+    "distance",
     "open_boundary",
+    "read_dxf",
     "save_boundary",
 ]

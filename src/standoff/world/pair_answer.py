@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.status import Status
+
+if TYPE_CHECKING:
+    from standoff.tracking.derivatives import Derivatives
 
 Array = NDArray[np.float64]
 
@@ -53,32 +56,23 @@ class PairAnswer(Proximity):
     def time(self) -> float:
         return self._time
 
-    def derivatives(self) -> Any:
-        """As of a `Proximity`, by the motions of the two *bodies*.
+    def derivatives(self) -> Derivatives:
+        """As of a `Proximity`, by the motions of the two *bodies*; of the nearest pair of pieces.
 
         Raises
         ------
         StandoffError
-            Of a pair that is FAR; of the normal's and points' where a piece stands off its body's
-            origin: ask ``gradient``.
+            Of a pair that is FAR.
         """
         self._refuse_far()
-        if self._arms.any():
-            raise StandoffError(
-                "Derivatives beyond the gradient are those of single bodies: ask "
-                "so.distance(...) of the pieces, or the gradient."
-            )
-        return super().derivatives()
+        found = super().derivatives()
+        return of_bodies(found, self._arms) if self._arms.any() else found
 
     @property
     def gradient(self) -> Array:
         """(12,) of the distance by unit twists (v_A, omega_A, v_B, omega_B) of the bodies."""
         self._refuse_far()
-        found = np.array(super().gradient)
-        for side, arm in enumerate(self._arms):
-            part = found[6 * side : 6 * side + 6]
-            part[3:] += np.cross(arm, part[:3])
-        return found
+        return gradient_of_bodies(super().gradient, self._arms)
 
     def as_dict(self) -> dict[str, Any]:
         return {"names": list(self.names), "pieces": list(self.pieces)} | super().as_dict()
@@ -98,6 +92,41 @@ class PairAnswer(Proximity):
             f"PairAnswer({a!r}, {b!r}, distance={self.distance:.12g}, {self.feature_a} - "
             f"{self.feature_b}, {self.status.name})"
         )
+
+
+def of_bodies(of_pieces: Derivatives, arms: Array) -> Derivatives:
+    """Derivatives by the motions of bodies, of those by the motions of their pieces.
+
+    Parameters
+    ----------
+    of_pieces : Derivatives
+    arms : (2, 3) array
+        From each body's origin to its piece's, world axes [length].
+    """
+    moved, bends = np.eye(12), np.zeros((12, 12))
+    for side, arm in enumerate(arms):
+        v, w = slice(6 * side, 6 * side + 3), slice(6 * side + 3, 6 * side + 6)
+        # a turn carries the piece by omega x arm, and to second order by omega x (omega x arm) / 2
+        moved[v, w] = np.cross(np.eye(3), arm).T
+        by_place = of_pieces.gradient[v]
+        both = np.outer(by_place, arm)
+        bends[w, w] = 0.5 * (both + both.T) - (by_place @ arm) * np.eye(3)
+    on_a, on_b = of_pieces.point_jacobians
+    return of_pieces._replace(
+        gradient=gradient_of_bodies(of_pieces.gradient, arms),
+        hessian=moved.T @ of_pieces.hessian @ moved + bends,
+        normal_jacobian=of_pieces.normal_jacobian @ moved,
+        point_jacobians=(on_a @ moved, on_b @ moved),
+    )
+
+
+def gradient_of_bodies(of_pieces: Array, arms: Array) -> Array:
+    """(12,) by the motions of bodies; a turn without a derivative stays nan, and no other."""
+    found = np.array(of_pieces)
+    for side, arm in enumerate(arms):
+        part = found[6 * side : 6 * side + 6]
+        part[3:] += np.cross(arm, part[:3])
+    return found
 
 
 def far_block(bound: float) -> Array:

@@ -24,6 +24,7 @@ MODULES = (
     "standoff.kernels.entries.servo",
     "standoff.kernels.entries.world",
     "standoff.kernels.entries.world_answers",
+    "standoff.kernels.entries.planar_solids",
 )
 """The modules that have entries."""
 

@@ -1,0 +1,115 @@
+"""A picture of parts that need not be convex, with the closest points of the worst pairs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from standoff.bodies.drawing.body_view import LIGHT, across, direction_to_viewer, frame
+from standoff.bodies.drawing.pair_picture import USUAL_VIEW, seen_from
+from standoff.bodies.drawing.solids import DARKEST, Solid, solid_of
+from standoff.clearance.picture import (
+    FAINT,
+    HALO,
+    NUMBER,
+    ON_TOP,
+    OTHERS,
+    THROUGH,
+    bodies_legend,
+    colour_of,
+    numbered_rows,
+    pairs_legend,
+)
+from standoff.clearance.report import Report, Row
+from standoff.clearance.verdicts import Verdict
+from standoff.geometry.validation import Array
+
+try:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.colors import to_rgb
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+except ModuleNotFoundError as error:
+    from standoff.errors import not_installed
+
+    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
+
+EDGE = "0.25"
+"""Colour of the parts' edges."""
+
+
+def assembly_figure(report: Report, unit: str) -> Figure:
+    """Draw the parts of a report on an assembly: those of its first pairs in colour.
+
+    All triangles are sorted together from back to front, as parts may be around one another.
+    """
+    rows = numbered_rows(report)
+    coloured = list(dict.fromkeys(name for row in rows for name in row.names))
+    figure = Figure(figsize=(9.0, 7.6), dpi=130)
+    FigureCanvasAgg(figure)
+    axes: Any = figure.add_axes((0.0, 0.12, 1.0, 0.88), projection="3d", computed_zorder=False)
+    towards = direction_to_viewer(USUAL_VIEW)
+    axes.view_init(*USUAL_VIEW)
+    axes.set_proj_type("ortho")
+    _draw_parts(axes, report, rows, coloured, towards)
+    cloud = _draw_pairs(axes, rows)
+    parts = _clouds(report)
+    frame(axes, seen_from(np.concatenate([*parts, *cloud]), towards), 0.0, towards, unit)
+    look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
+    figure.legend(handles=bodies_legend(coloured), loc="lower left", ncols=2, **look)
+    figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
+    return figure
+
+
+def _clouds(report: Report) -> list[Array]:
+    world: Any = report.world
+    return [
+        np.asarray(world.fixed_poses[name].apply(solid_of(body).points))
+        for name, body in world.bodies.items()
+    ]
+
+
+def _draw_parts(
+    axes: Any, report: Report, rows: Sequence[Row], coloured: Sequence[str], towards: Array
+) -> None:
+    met = (Verdict.OVERLAPPING, Verdict.CONTAINED)
+    deep = {name for row in rows if row.verdict in met for name in row.names}
+    corners, colours, lines = [], [], []
+    right, up = across(towards)
+    lamp = LIGHT @ np.array([right, towards, up])
+    world: Any = report.world
+    for name, body in world.bodies.items():
+        solid: Solid = solid_of(body)
+        pose = world.fixed_poses[name]
+        points = np.asarray(pose.apply(solid.points))
+        upright = (solid.normals @ pose.rotation.T)[solid.triangles].mean(axis=1)
+        seen = upright @ towards > 0.0
+        lengths = np.maximum(np.linalg.norm(upright[seen], axis=1), np.finfo(float).tiny)
+        bright = DARKEST + (1.0 - DARKEST) * np.clip(upright[seen] @ lamp / lengths, 0.0, 1.0)
+        colour = colour_of(name, coloured) if name in coloured else OTHERS
+        opacity = FAINT if name not in coloured else THROUGH if name in deep else 1.0
+        shade = bright[:, None] * np.array(to_rgb(colour))
+        corners.append(points[solid.triangles][seen])
+        colours.append(np.column_stack([shade, np.full(len(shade), opacity)]))
+        lines += [np.asarray(pose.apply(line.points)) for line in solid.lines if not line.smooth]
+    every = np.concatenate(colours)
+    edges = np.where(every[:, 3:] == 1.0, every, 0.0)
+    axes.add_collection3d(
+        Poly3DCollection(
+            np.concatenate(corners), facecolors=every, edgecolors=edges, linewidths=0.3
+        )
+    )
+    axes.add_collection3d(Line3DCollection(lines, colors=EDGE, linewidths=0.35, alpha=0.5))
+
+
+def _draw_pairs(axes: Any, rows: Sequence[Row]) -> list[Array]:
+    found = []
+    for number, row in enumerate(rows, 1):
+        ends = np.array([row.answer.point_a, row.answer.point_b])
+        found.append(ends)
+        axes.plot(*ends.T, "-o", color="black", linewidth=1.5, markersize=3.5, zorder=ON_TOP)
+        spot = axes.text(*ends.mean(axis=0), f" {number}", va="bottom", zorder=ON_TOP + 1, **NUMBER)
+        spot.set_path_effects(HALO)
+    return found

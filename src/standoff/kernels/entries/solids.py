@@ -1,0 +1,70 @@
+"""The distance of two solids' boundaries as Python calls it."""
+
+from numba import types
+
+from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.entry import INT, INTS, READ, WRITE, WRITE_INTS
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_minimum import nearest
+from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid
+from standoff.kernels.solids.spatial_search import search
+from standoff.kernels.values import Pose
+
+# Packed boundary, then leaves and tree; pose in A's frame (R, p).
+SOLID = types.Tuple((INTS, READ, INTS, READ))
+
+
+@kernel
+def side_at(solid, pose, sense):
+    ints, reals, own, numbers = solid
+    R = (pose[0], pose[1], pose[2], pose[3], pose[4], pose[5], pose[6], pose[7], pose[8])
+    placed = Pose(R, (pose[9], pose[10], pose[11]))
+    return S.Side(
+        pointer(ints, 0), pointer(reals, 0), pointer(own, 0), pointer(numbers, 0), placed, sense
+    )
+
+
+SOLIDS = types.Tuple((SOLID, SOLID))
+# Work space, a heap's nodes and its keys.
+ROOM = types.Tuple((WRITE, WRITE_INTS, WRITE))
+# Of the work space: what a closing needs; the rest holds pairs of leaves.
+CLOSING = 2048
+
+
+@entry(SOLIDS, READ, INTS, WRITE, WRITE, ROOM, WRITE_INTS, work="bodies")
+def boundary_distance(solids, pose, senses, best, minima, room, counts):
+    """Of two solids, B at a pose in A's frame, each seen from outside or inside (`senses`); `best`
+    says how far and how to search."""
+    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    a, b = side_at(solids[0], still, senses[0]), side_at(solids[1], pose, senses[1])
+    work, nodes, keys = room
+    limit = len(keys)
+    heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, limit), limit)
+    space = (pointer(work, CLOSING), (len(work) - CLOSING) // 3, pointer(work, 0))
+    search(a, b, pointer(best, 0), pointer(minima, 0), heap, space, pointer(counts, 0))
+
+
+@entry(SOLID, READ, INT, types.float64, types.float64, WRITE, work="bodies")
+def solid_point(solid, pose, leaf, u, v, out):
+    """The jet of a leaf (18 numbers) into `out`."""
+    jet = leaf_jet(side_at(solid, pose, S.OUTSIDE), leaf, u, v)
+    for i in range(6):
+        vector = jet[i]
+        for k in range(3):
+            out[3 * i + k] = vector[k]
+
+
+@entry(SOLIDS, READ, INTS, WRITE, WRITE_INTS, work="bodies")
+def nearest_in_leaves(solids, pose, leaves, values, counts):
+    """From the parameters values[:4] of two leaves to those of a local minimum, and the distance in
+    values[4]."""
+    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    a, b = side_at(solids[0], still, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    start = (values[0], values[1], values[2], values[3])
+    box_a, box_b = leaf_box(a, leaves[0]), leaf_box(b, leaves[1])
+    q, distance = nearest(a, leaves[0], box_a, b, leaves[1], box_b, start, pointer(counts, 0))
+    for k in range(4):
+        values[k] = q[k]
+    values[4] = distance
+    on_both = on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])
+    values[5] = 1.0 if on_both else 0.0

@@ -1,0 +1,1 @@
+"""Solids that need not be convex: potentials, searches and closings."""

@@ -1,0 +1,408 @@
+"""The greatest value of a potential over a piece of a solid, bounded by Taylor's formula."""
+
+from math import cos, inf, sin
+
+from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.vectors import axpy, dot, norm, rotate, scale, sub
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import (
+    chart_record,
+    coedge_parameters,
+    edge_record,
+    feature_jet,
+    moved_jet,
+)
+from standoff.kernels.body.trimming import on_face
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_heights import height_greatest
+from standoff.kernels.solids.spatial_likeness import differences, to_axis, to_own, turning
+from standoff.kernels.solids.spatial_pieces import (
+    CUT_BY_TRIM,
+    OUTSIDE_TRIM,
+    ZERO,
+    leaf_ints,
+    leaf_jet,
+    leaf_reals,
+    meets,
+    part_box,
+    trim_state,
+)
+from standoff.kernels.solids.torus_potential import (
+    AXIS_OF,
+    THIRD,
+    TORUS_THROUGH,
+    form,
+    potential_jet,
+)
+
+# Boxes for one piece and one potential, and how many wait at a time.
+MOST_BOXES = 400
+MOST_WAITING = 60
+# Parts of one trimming curve that are tested along it.
+MOST_PARTS = 200
+PARTS_WAITING = 40
+
+
+@kernel
+def line_max(g, c, lo, hi):
+    """The greatest g e + c e² / 2 for lo <= e <= hi."""
+    best = max(g * lo + 0.5 * c * lo * lo, g * hi + 0.5 * c * hi * hi)
+    if c < 0.0 and lo < -g / c < hi:
+        best = max(best, -0.5 * g * g / c)
+    return best
+
+
+@kernel
+def quadratic_max(g, H, e):
+    """The greatest g . e + eᵀ H e / 2 over a rectangle; H = (uu, uv, vv), e = (u0, u1, v0, v1)."""
+    gu, gv = g
+    a, b, c = H
+    best = -inf
+    for k in range(2):
+        eu, ev = e[k], e[2 + k]
+        best = max(best, gu * eu + 0.5 * a * eu * eu + line_max(gv + b * eu, c, e[2], e[3]))
+        best = max(best, gv * ev + 0.5 * c * ev * ev + line_max(gu + b * ev, a, e[0], e[1]))
+    det = a * c - b * b
+    if a < 0.0 and det > 0.0:
+        eu, ev = (b * gv - c * gu) / det, (b * gu - a * gv) / det
+        if e[0] < eu < e[1] and e[2] < ev < e[3]:
+            best = max(best, 0.5 * (gu * eu + gv * ev))
+    return best
+
+
+@kernel
+def pulled_back(phi, sign, jet, reach):
+    """(value, (F_u, F_v), (F_uu, F_uv, F_vv), |D²|, |D³|) of F = sign phi(x(u, v))."""
+    x, xu, xv, xuu, xuv, xvv = jet
+    value, g, H, c1, c2 = potential_jet(phi, x, reach)
+    slope = (sign * dot(g, xu), sign * dot(g, xv))
+    second = (
+        sign * (form(H, xu, xu) + dot(g, xuu)),
+        sign * (form(H, xu, xv) + dot(g, xuv)),
+        sign * (form(H, xv, xv) + dot(g, xvv)),
+    )
+    third = THIRD * (c1 * c1 + c2 * c2) + 3.0 * c1 * c2
+    return sign * value, slope, second, c1 + c2, third
+
+
+@kernel
+def third_bounds(m, o, derivatives):
+    """Bounds of F_uuu, F_uuv, F_uvv and F_vvv from those of the piece, at m[o:], and of the first
+    to the third derivative of the potential."""
+    d1, d2, d3 = derivatives
+    lu, lv = m[o + S.FIRST], m[o + S.FIRST + 1]
+    uu, uv, vv = m[o + S.SECOND], m[o + S.SECOND + 1], m[o + S.SECOND + 2]
+    t = o + S.THIRDS
+    return (
+        d3 * lu * lu * lu + 3.0 * d2 * lu * uu + d1 * m[t],
+        d3 * lu * lu * lv + d2 * (2.0 * lu * uv + uu * lv) + d1 * m[t + 1],
+        d3 * lu * lv * lv + d2 * (2.0 * lv * uv + vv * lu) + d1 * m[t + 2],
+        d3 * lv * lv * lv + 3.0 * d2 * lv * vv + d1 * m[t + 3],
+    )
+
+
+@kernel
+def widened(second, thirds, spread, mu, mv):
+    """Second derivatives that bound F with its remainder for |e_u| <= mu, |e_v| <= mv."""
+    a, b, c = second
+    return (
+        a + (thirds[0] * mu + 3.0 * thirds[1] * mv) / 3.0 + spread[0] + spread[1],
+        b,
+        c + (3.0 * thirds[2] * mu + thirds[3] * mv) / 3.0 + spread[2] + spread[1],
+    )
+
+
+@kernel
+def is_plane(phi):
+    return phi.kind == TORUS_THROUGH and phi.k1 == 0.0 and phi.k2 == 0.0
+
+
+@kernel
+def swing(side, o, n):
+    """The amplitude along n of the ellipse of the affine map at reals[o:]."""
+    m, R = side.reals, side.pose.R
+    p = dot(n, rotate(R, (m[o], m[o + 3], m[o + 6])))
+    q = dot(n, rotate(R, (m[o + 1], m[o + 4], m[o + 7])))
+    return sqrt(p * p + q * q)
+
+
+@kernel
+def arc_offset(side, feature):
+    """Where the affine map of a conic edge stands in reals; -1: it is none."""
+    first = side.ints[L.N_FACES]
+    if not first <= feature < first + side.ints[L.N_EDGES]:
+        return -1
+    e = edge_record(side.ints, feature)
+    if side.ints[e + L.EDGE_KIND] != L.CONIC:
+        return -1
+    return side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
+
+
+@kernel
+def heights_third(phi, side, leaf, box, thirds):
+    """Bounds of the third derivatives of the height over a plane: those of an arc, a cylinder or a
+    cone are as great as it swings along the normal."""
+    r = leaf_ints(side, leaf)
+    if side.own[r + S.DIM] == 1:
+        o = arc_offset(side, side.own[r + S.FEATURE])
+        return (swing(side, o, phi.n), 0.0, 0.0, 0.0) if o >= 0 else thirds
+    if side.own[r + S.DIM] == 2:
+        c = chart_record(side.ints, side.own[r + S.CHART])
+        kind, o = side.ints[c + L.CHART_KIND], side.ints[c + L.CHART_REALS]
+        if kind == L.CYLINDER:
+            return (swing(side, o, phi.n), 0.0, 0.0, 0.0)
+        if kind == L.CONE:
+            w = swing(side, o, phi.n)
+            return (w * max(abs(box.v0), abs(box.v1)), w, 0.0, 0.0)
+    return thirds
+
+
+@kernel
+def lesser(a, b):
+    return min(a[0], b[0]), min(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3])
+
+
+@kernel
+def likely_third(phi, side, leaf, x, reach, thirds):
+    """The same for a potential that is nearly the leaf's own, or turns about nearly its axis."""
+    o, m = leaf_reals(side, leaf), side.numbers
+    e, w = to_own(phi, side, leaf, x, reach)
+    if e < inf:
+        d = differences(phi, x, reach, e, w)
+        if d[0] < inf:
+            thirds = lesser(thirds, third_bounds(m, o, d))
+    known, point, axis = turning(side, leaf)
+    if known:
+        e, w = to_axis(phi, point, axis, x, reach)
+        d = differences(phi, x, reach, e, w)
+        if d[0] < inf:
+            t = third_bounds(m, o, d)
+            thirds = lesser(thirds, (t[0], t[1], t[2], thirds[3]))
+    return thirds
+
+
+@kernel
+def greatest(phi, sign, side, leaf, box, u, v):
+    """(bound of sign phi over a box, value and slopes at (u, v), how far the slopes may change)."""
+    o, m = leaf_reals(side, leaf), side.numbers
+    mu, mv = max(box.u1 - u, u - box.u0), max(box.v1 - v, v - box.v0)
+    reach = m[o + S.FIRST] * mu + m[o + S.FIRST + 1] * mv
+    value, g, H, d2, d3 = pulled_back(phi, sign, leaf_jet(side, leaf, u, v), reach)
+    if d2 == inf:
+        return value + reach, value, g, (inf, inf)
+    thirds = third_bounds(m, o, (1.0, d2, d3))
+    if is_plane(phi):
+        thirds = heights_third(phi, side, leaf, box, thirds)
+    elif phi.kind != TORUS_THROUGH:
+        thirds = likely_third(phi, side, leaf, leaf_jet(side, leaf, u, v)[0], reach, thirds)
+    w = o + S.SPREAD
+    wide = widened(H, thirds, (m[w], m[w + 1], m[w + 2]), mu, mv)
+    e = (box.u0 - u, box.u1 - u, box.v0 - v, box.v1 - v)
+    bound = value + quadratic_max(g, wide, e)
+    du = (abs(H[0]) + m[w]) * mu + (abs(H[1]) + m[w + 1]) * mv
+    du += 0.5 * (thirds[0] * mu * mu + 2.0 * thirds[1] * mu * mv + thirds[2] * mv * mv)
+    dv = (abs(H[1]) + m[w + 1]) * mu + (abs(H[2]) + m[w + 2]) * mv
+    dv += 0.5 * (thirds[1] * mu * mu + 2.0 * thirds[2] * mu * mv + thirds[3] * mv * mv)
+    return min(bound, value + reach), value, g, (du, dv)
+
+
+@kernel
+def axis_data(side, leaf):
+    """(known, c, E1, E2, b): a cylinder or an arc as c + E1 cos u + E2 sin u + v b, in A's frame,
+    E1 and E2 of one length and normal to each other and to b."""
+    r = leaf_ints(side, leaf)
+    dim = side.own[r + S.DIM]
+    o = -1
+    straight = 0.0
+    if dim == 2 and side.own[r + S.NATURAL] == AXIS_OF:
+        c = chart_record(side.ints, side.own[r + S.CHART])
+        o, straight = side.ints[c + L.CHART_REALS], 1.0
+    elif dim == 1 and side.own[r + S.NATURAL] == -2:
+        e = edge_record(side.ints, side.own[r + S.FEATURE])
+        o = side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
+    if o < 0:
+        return False, ZERO, ZERO, ZERO, ZERO
+    m, R, p = side.reals, side.pose.R, side.pose.p
+    c = rotate(R, (m[o + 9], m[o + 10], m[o + 11]))
+    c = (c[0] + p[0], c[1] + p[1], c[2] + p[2])
+    first = rotate(R, (m[o], m[o + 3], m[o + 6]))
+    other = rotate(R, (m[o + 1], m[o + 4], m[o + 7]))
+    along = scale(straight, rotate(R, (m[o + 2], m[o + 5], m[o + 8])))
+    return True, c, first, other, along
+
+
+@kernel
+def round_axis_greatest(phi, sign, data, box, u, v):
+    """The same bound for the distance from an axis over a cylinder or an arc, which stays sharp
+    where both nearly share their axis: only the small quantities are expanded."""
+    _, centre, first, other, along = data
+    a = phi.n
+    offset = sub(centre, phi.o)
+    offset = axpy(-dot(a, offset), a, offset)
+    lean = axpy(-dot(a, along), a, along)
+    p, q = dot(a, first), dot(a, other)
+    r2 = dot(first, first)
+    cu, su = cos(u), sin(u)
+    E, Eu = axpy(cu, first, scale(su, other)), axpy(-su, first, scale(cu, other))
+    tilt, tilt_u = p * cu + q * su, q * cu - p * su
+    both = axpy(2.0 * v, lean, scale(2.0, offset))
+    # |offset + v lean + E|² - |E|², less what is along the axis
+    eta = dot(offset, offset) + 2.0 * v * dot(offset, lean) + v * v * dot(lean, lean)
+    eta += dot(both, E) - tilt * tilt
+    gu = dot(both, Eu) - 2.0 * tilt * tilt_u
+    gv = 2.0 * dot(offset, lean) + 2.0 * v * dot(lean, lean) + 2.0 * dot(lean, E)
+    huu = -dot(both, E) - 2.0 * (tilt_u * tilt_u - tilt * tilt)
+    huv = 2.0 * dot(lean, Eu)
+    hvv = 2.0 * dot(lean, lean)
+    mu, mv = max(box.u1 - u, u - box.u0), max(box.v1 - v, v - box.v0)
+    r = sqrt(r2)
+    far = norm(both) + 2.0 * norm(lean) * mv
+    thirds = (far * r + 8.0 * (p * p + q * q), 2.0 * norm(lean) * r, 0.0, 0.0)
+    s = sign * phi.sign
+    wide = widened((s * huu, s * huv, s * hvv), thirds, (0.0, 0.0, 0.0), mu, mv)
+    e = (box.u0 - u, box.u1 - u, box.v0 - v, box.v1 - v)
+    most = eta + s * quadratic_max((s * gu, s * gv), wide, e)
+    if r2 + most <= 0.0:
+        return inf
+    return s * ((r - phi.k1) + most / (sqrt(r2 + most) + r))
+
+
+@kernel
+def along_trim(phi, sign, most, side, leaf, box):
+    """Is sign phi proven to be at most `most` on all trimming curves in a box?"""
+    r = leaf_ints(side, leaf)
+    own, m = side.own, side.numbers
+    first = own[S.LISTS] + own[r + S.LIST]
+    stack = reals_on_stack(84)
+    rounds = 0
+    for k in range(own[r + S.N_LIST]):
+        piece = own[first + k]
+        o = own[S.R_PIECES] + S.PIECE_REALS * piece
+        stack[0], stack[1] = m[o], m[o + 1]
+        count = 1
+        while count > 0:
+            count -= 1
+            ta, tb = stack[2 * count], stack[2 * count + 1]
+            if not meets(part_box(side, piece, ta, tb), box):
+                continue
+            rounds += 1
+            h, t = 0.5 * (tb - ta), 0.5 * (ta + tb)
+            feature = own[own[S.PIECES] + S.PIECE_INTS * piece + 1]
+            jet = moved_jet(side.pose, feature_jet(side.ints, side.reals, feature, -1, t, 0.0))
+            l1, l2 = m[o + S.P_FIRST], m[o + S.P_FIRST + 1]
+            l3, spread = m[o + S.P_FIRST + 2], m[o + S.P_FIRST + 3]
+            value, g, H, d2, d3 = pulled_back(phi, sign, jet, l1 * h)
+            bound = value + l1 * h
+            if d2 < inf:
+                third = d3 * l1 * l1 * l1 + 3.0 * d2 * l1 * l2 + l3
+                arc = arc_offset(side, feature)
+                if arc >= 0 and is_plane(phi):
+                    third = swing(side, arc, phi.n)
+                bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
+            if bound <= most:
+                continue
+            if rounds > MOST_PARTS or count >= PARTS_WAITING:
+                return False
+            if value > most:
+                coedge = own[own[S.PIECES] + S.PIECE_INTS * piece]
+                pu, pv, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, t)
+                pu += m[o + S.P_SHIFT]
+                if box.u0 <= pu <= box.u1 and box.v0 <= pv <= box.v1:
+                    return False
+            stack[2 * count], stack[2 * count + 1] = ta, t
+            stack[2 * count + 2], stack[2 * count + 3] = t, tb
+            count += 2
+    return True
+
+
+@kernel
+def held_by_trim(phi, sign, most, side, leaf, box, g, change):
+    """Is sign phi at most `most` on the part of a face in a box, because it grows along a parameter
+    up to the trimming curves, where it is not more, or to a side of the box, where it is not more
+    or where no face is?"""
+    along_u, along_v = abs(g[0]) > change[0], abs(g[1]) > change[1]
+    if not (along_u or along_v) or not along_trim(phi, sign, most, side, leaf, box):
+        return False
+    for k in range(2):
+        if not (along_u if k == 0 else along_v):
+            continue
+        if k == 0:
+            at = box.u1 if g[0] > 0.0 else box.u0
+            exit_ = S.Box(at, at, box.v0, box.v1)
+        else:
+            at = box.v1 if g[1] > 0.0 else box.v0
+            exit_ = S.Box(box.u0, box.u1, at, at)
+        if trim_state(side, leaf, exit_) == OUTSIDE_TRIM:
+            return True
+        u, v = 0.5 * (exit_.u0 + exit_.u1), 0.5 * (exit_.v0 + exit_.v1)
+        if greatest(phi, sign, side, leaf, exit_, u, v)[0] <= most:
+            return True
+    return False
+
+
+@kernel
+def settled(phi, sign, most, part, data, q):
+    """Whether sign phi is at most `most` on a part, as a whole: 1 proven, -1 a point of the solid
+    has more, 0 not known."""
+    side, leaf, b = part.side, part.leaf, part.box
+    u, v = min(max(q[0], b.u0), b.u1), min(max(q[1], b.v0), b.v1)
+    if greatest(phi, sign, side, leaf, b, u, v)[0] <= most:
+        return 1
+    if is_plane(phi):
+        known, height = height_greatest(phi, sign, side, leaf, b)
+        if known and height <= most:
+            return 1
+    cu, cv = 0.5 * (b.u0 + b.u1), 0.5 * (b.v0 + b.v1)
+    if data[0] and (
+        round_axis_greatest(phi, sign, data, b, cu, cv) <= most
+        or round_axis_greatest(phi, sign, data, b, u, v) <= most
+    ):
+        return 1
+    bound, value, g, change = greatest(phi, sign, side, leaf, b, cu, cv)
+    if bound <= most:
+        return 1
+    state = trim_state(side, leaf, b)
+    if state == OUTSIDE_TRIM:
+        return 1
+    if state == CUT_BY_TRIM:
+        if held_by_trim(phi, sign, most, side, leaf, b, g, change):
+            return 1
+        chart = side.own[leaf_ints(side, leaf) + S.CHART]
+        return -1 if value > most and on_face(side.ints, side.reals, chart, cu, cv) else 0
+    return -1 if value > most else 0
+
+
+@kernel
+def proven(phi, sign, most, part, q, counts):
+    """Is sign phi at most `most` all over the solid's piece that is in a part? Its greatest value
+    is expected near the parameters q."""
+    side, leaf, box = part.side, part.leaf, part.box
+    o, m = leaf_reals(side, leaf), side.numbers
+    known, centre, first, other, along = axis_data(side, leaf)
+    data = (known and phi.kind == AXIS_OF, centre, first, other, along)
+    stack = reals_on_stack(248)
+    stack[0], stack[1], stack[2], stack[3] = box.u0, box.u1, box.v0, box.v1
+    count, rounds = 1, 0
+    while count > 0:
+        count -= 1
+        n = 4 * count
+        b = S.Box(stack[n], stack[n + 1], stack[n + 2], stack[n + 3])
+        rounds += 1
+        counts[0] += 1
+        told = settled(phi, sign, most, S.Part(side, leaf, b), data, q)
+        if told > 0:
+            continue
+        if told < 0 or rounds > MOST_BOXES or count >= MOST_WAITING:
+            return False
+        wide_u = m[o + S.FIRST] * (b.u1 - b.u0)
+        wide_v = m[o + S.FIRST + 1] * (b.v1 - b.v0)
+        for k in range(2):
+            n = 4 * (count + k)
+            stack[n], stack[n + 1], stack[n + 2], stack[n + 3] = b.u0, b.u1, b.v0, b.v1
+            if wide_u >= wide_v:
+                stack[n + 1 - k] = 0.5 * (b.u0 + b.u1)
+            else:
+                stack[n + 3 - k] = 0.5 * (b.v0 + b.v1)
+        count += 2
+    return True

@@ -1,0 +1,166 @@
+"""Pairs of nodes: how far apart their boxes are, whether their cones of normals admit a nearest
+pair, and the queue of those that wait."""
+
+from math import acos, asin, inf, pi
+
+from standoff.kernels.algebra.vectors import add, dot, norm, rotate, scale, sub
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids import spatial_layout as S
+
+# Radians: added to cones for the rounding of angles.
+CONE_SPARE = 1e-9
+
+
+@kernel
+def node_reals(side, node):
+    return side.own[S.R_NODES] + S.NODE_REALS * node
+
+
+@kernel
+def vector_at(m, o):
+    return (m[o], m[o + 1], m[o + 2])
+
+
+@kernel
+def node_axis(side, node, k):
+    return rotate(side.pose.R, vector_at(side.numbers, node_reals(side, node) + S.AXES + 3 * k))
+
+
+@kernel
+def node_centre(side, node):
+    return add(rotate(side.pose.R, vector_at(side.numbers, node_reals(side, node))), side.pose.p)
+
+
+@kernel
+def half_along(m, o, axes, n):
+    return (
+        m[o] * abs(dot(axes[0], n))
+        + m[o + 1] * abs(dot(axes[1], n))
+        + m[o + 2] * abs(dot(axes[2], n))
+    )
+
+
+@kernel
+def cone_of(side, node):
+    """(axis, half angle) of the normals of features below a node; -1: there are none."""
+    if side.sense == S.EITHER:
+        return (0.0, 0.0, 1.0), pi
+    o = node_reals(side, node) + (S.N_OUT if side.sense == S.OUTSIDE else S.N_IN)
+    return rotate(side.pose.R, vector_at(side.numbers, o)), side.numbers[o + 3]
+
+
+@kernel
+def gap_of(a, i, b, j):
+    """A lower bound of the distance of two nodes' boxes: the widest gap along their axes, crosses
+    of these, and the line between their centres. Below 0 where none separates them."""
+    axes_a = (node_axis(a, i, 0), node_axis(a, i, 1), node_axis(a, i, 2))
+    axes_b = (node_axis(b, j, 0), node_axis(b, j, 1), node_axis(b, j, 2))
+    ha, hb = node_reals(a, i) + S.HALF, node_reals(b, j) + S.HALF
+    ma, mb = a.numbers, b.numbers
+    delta = sub(node_centre(b, j), node_centre(a, i))
+    length = norm(delta)
+    best = -inf
+    if length > 0.0:
+        n = scale(1.0 / length, delta)
+        best = length - half_along(ma, ha, axes_a, n) - half_along(mb, hb, axes_b, n)
+    for k in range(3):
+        n = axes_a[k]
+        best = max(best, abs(dot(delta, n)) - ma[ha + k] - half_along(mb, hb, axes_b, n))
+        n = axes_b[k]
+        best = max(best, abs(dot(delta, n)) - mb[hb + k] - half_along(ma, ha, axes_a, n))
+    # the nearest points of the boxes, found roughly, give a direction for corners
+    x, y = (0.0, 0.0, 0.0), delta
+    for _ in range(3):
+        x = within(ma, ha, axes_a, y)
+        y = add(delta, within(mb, hb, axes_b, sub(x, delta)))
+    away = sub(y, x)
+    length = norm(away)
+    if length > 0.0:
+        n = scale(1.0 / length, away)
+        best = max(
+            best, dot(delta, n) - half_along(ma, ha, axes_a, n) - half_along(mb, hb, axes_b, n)
+        )
+    return best
+
+
+@kernel
+def within(m, o, axes, x):
+    """The point of a box about the origin that is nearest to x."""
+    r = (0.0, 0.0, 0.0)
+    for k in range(3):
+        c = min(max(dot(axes[k], x), -m[o + k]), m[o + k])
+        r = add(r, scale(c, axes[k]))
+    return r
+
+
+@kernel
+def angle_between(a, b):
+    return acos(min(max(dot(a, b), -1.0), 1.0))
+
+
+@kernel
+def node_reach(side, node):
+    o = node_reals(side, node) + S.HALF
+    return norm(vector_at(side.numbers, o))
+
+
+@kernel
+def admits(a, i, b, j, gap):
+    """May two nodes hold a nearest pair of features, by their cones of normals? What is proven
+    apart only; False is proven."""
+    axis_a, angle_a = cone_of(a, i)
+    axis_b, angle_b = cone_of(b, j)
+    if gap <= 0.0:
+        return True
+    if angle_a < 0.0 or angle_b < 0.0:
+        return False
+    if (
+        angle_a + angle_b < pi
+        and angle_between(axis_a, axis_b) < pi - angle_a - angle_b - CONE_SPARE
+    ):
+        return False
+    delta = sub(node_centre(b, j), node_centre(a, i))
+    length = norm(delta)
+    reach = node_reach(a, i) + node_reach(b, j)
+    if length <= reach:
+        return True
+    n = scale(1.0 / length, delta)
+    spread = asin(reach / length) + CONE_SPARE
+    if angle_between(axis_a, n) > angle_a + spread:
+        return False
+    return angle_between(axis_b, n) >= pi - angle_b - spread
+
+
+@kernel
+def push(keys, firsts, others, count, key, i, j):
+    """Put (key, i, j) into a heap with the least key first; its new count."""
+    at = count
+    while at > 0:
+        above = (at - 1) // 2
+        if keys[above] <= key:
+            break
+        keys[at], firsts[at], others[at] = keys[above], firsts[above], others[above]
+        at = above
+    keys[at], firsts[at], others[at] = key, i, j
+    return count + 1
+
+
+@kernel
+def take(keys, firsts, others, count):
+    """Take the least out of the heap: (key, i, j, new count)."""
+    key, i, j = keys[0], firsts[0], others[0]
+    count -= 1
+    k, m, n = keys[count], firsts[count], others[count]
+    at = 0
+    while True:
+        below = 2 * at + 1
+        if below >= count:
+            break
+        if below + 1 < count and keys[below + 1] < keys[below]:
+            below += 1
+        if k <= keys[below]:
+            break
+        keys[at], firsts[at], others[at] = keys[below], firsts[below], others[below]
+        at = below
+    keys[at], firsts[at], others[at] = k, m, n
+    return key, i, j, count

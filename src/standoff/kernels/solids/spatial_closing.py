@@ -1,0 +1,306 @@
+"""Closing a pair of leaves: no two of their points on the solids are nearer than a bound."""
+
+from standoff.kernels.algebra.vectors import dot, norm, scale, sub
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_bounds import proven
+from standoff.kernels.solids.spatial_minimum import (
+    across,
+    direction,
+    nearest,
+    plane_between,
+    shape,
+    torus_between,
+)
+from standoff.kernels.solids.spatial_pieces import (
+    OUTSIDE_TRIM,
+    leaf_box,
+    leaf_jet,
+    leaf_reals,
+    natural,
+    on_solid,
+    reach_of,
+    trim_state,
+)
+from standoff.kernels.solids.torus_potential import potential_jet
+
+# What `best` holds: the least distance, how many minima, its leaves and parameters, the least bound
+# of what stayed open, 1 where the boundaries meet, and the tolerance, the slack of rounding, the
+# size, the tolerance of a tie, and how many boxes are allowed.
+LEAST, N_MINIMA, LEAF_A, LEAF_B, AT, OPEN, MET, TOLERANCE, ROUNDING, SIZE, BUDGET = (
+    0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13,
+)  # fmt: skip
+BEST_REALS = 16
+# What a minimum holds: distance, leaves, parameters.
+MINIMUM_REALS = 8
+MOST_MINIMA = 256
+# Pairs of boxes that wait, of 9 numbers each.
+PAIR_REALS = 9
+MOST_PAIRS = 200
+# Radians: faces that join smoothly may differ in their normals by this.
+SMOOTH_SPARE = 2e-7
+# Shares of 1 / span: the least difference of curvature to both sides that is sought.
+MARGINS = (1.0, 0.3, 3.0)
+# Of the size: parts shorter than this are not cut again.
+SHORTEST = 1e-9
+
+
+@kernel
+def keep(best, minima, leaf_a, leaf_b, q, distance):
+    """Keep a pair of points on both solids."""
+    if distance < best[LEAST]:
+        best[LEAST] = distance
+        best[LEAF_A], best[LEAF_B] = leaf_a, leaf_b
+        for k in range(4):
+            best[AT + k] = q[k]
+    most = best[LEAST] + best[TOLERANCE]
+    if distance > most:
+        return
+    n = int(best[N_MINIMA])
+    if n >= MOST_MINIMA:
+        kept = 0
+        for i in range(n):
+            if minima[MINIMUM_REALS * i] <= most:
+                for k in range(MINIMUM_REALS):
+                    minima[MINIMUM_REALS * kept + k] = minima[MINIMUM_REALS * i + k]
+                kept += 1
+        n = kept
+        best[N_MINIMA] = n
+        if n >= MOST_MINIMA:
+            return
+    o = MINIMUM_REALS * n
+    minima[o], minima[o + 1], minima[o + 2] = distance, leaf_a, leaf_b
+    for k in range(4):
+        minima[o + 3 + k] = q[k]
+    best[N_MINIMA] = n + 1
+
+
+@kernel
+def held_along(part, jet, toward, u, v):
+    """Second derivatives that a slope across the side of a box is worth there."""
+    box = part.box
+    slope_u, slope_v = dot(toward, jet[1]), dot(toward, jet[2])
+    wide_u, wide_v = box.u1 - box.u0, box.v1 - box.v0
+    mu = 2.0 * abs(slope_u) / wide_u if wide_u > 0.0 and (u <= box.u0 or u >= box.u1) else 0.0
+    mv = 2.0 * abs(slope_v) / wide_v if wide_v > 0.0 and (v <= box.v0 or v >= box.v1) else 0.0
+    return mu, mv
+
+
+@kernel
+def by_own_surface(goal, a, b, q, counts):
+    """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
+    known, phi = natural(a.side, a.leaf)
+    return known and proven(phi, -1.0, -goal, b, q, counts)
+
+
+@kernel
+def by_witness(goal, a, b, at, best, counts):
+    """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
+    wa, wb, q = at
+    ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
+    size = best[SIZE]
+    n = direction(a.side, wa, ja, b.side, wb, jb, 1e-9 * size)
+    if norm(n) < 0.5:
+        return False
+    x, y = ja[0], jb[0]
+    here = wa == a.leaf and wb == b.leaf
+    place = (here, q, x, y)
+    if by_one(plane_between(x, y, n), goal, a, b, place, counts):
+        return True
+    span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
+    span = max(span, reach_of(b.side, b.leaf, b.box.u1 - b.box.u0, b.box.v1 - b.box.v0))
+    span = max(min(span, size), 1e-6 * size)
+    frame = across(n)
+    held_a = held_along(a, ja, n, q[0], q[1]) if here else (0.0, 0.0)
+    held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
+    sa = shape(a.side, wa, ja, n, frame, held_a, span)
+    sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
+    for k in range(3):
+        phi = torus_between(x, y, n, frame, sa, sb, MARGINS[k] / span)
+        if by_one(phi, goal, a, b, place, counts):
+            return True
+    return False
+
+
+@kernel
+def middle(box):
+    return 0.5 * (box.u0 + box.u1), 0.5 * (box.v0 + box.v1)
+
+
+@kernel
+def by_one(phi, goal, a, b, place, counts):
+    """By one potential through points x and y, whose parameters q are those of the parts if `here`;
+    each part gets half of what the potential gains beyond the goal."""
+    here, q, x, y = place
+    low, high = potential_jet(phi, x, 0.0)[0], potential_jet(phi, y, 0.0)[0]
+    spare = 0.5 * (high - low - goal)
+    if spare < 0.0:
+        return False
+    pa, pb = (q[0], q[1]), (q[2], q[3])
+    if not here:
+        pa, pb = middle(a.box), middle(b.box)
+    if not proven(phi, 1.0, low + spare, a, pa, counts):
+        return False
+    return proven(phi, -1.0, spare - high, b, pb, counts)
+
+
+@kernel
+def slanted(part, jet, delta, length, reach):
+    """Is no direction from one box to the other normal to a leaf, by its tangents?"""
+    side, leaf, box = part.side, part.leaf, part.box
+    o, m = leaf_reals(side, leaf), side.numbers
+    hu, hv = 0.5 * (box.u1 - box.u0), 0.5 * (box.v1 - box.v0)
+    far = length + reach
+    uu, uv, vv = m[o + S.SECOND], m[o + S.SECOND + 1], m[o + S.SECOND + 2]
+    for k in range(2):
+        tangent = jet[1 + k]
+        change = uu * hu + uv * hv if k == 0 else uv * hu + vv * hv
+        size = norm(tangent)
+        spare = size * reach + (change + SMOOTH_SPARE * size) * far
+        if size > 0.0 and abs(dot(tangent, delta)) > spare:
+            return True
+    return False
+
+
+@kernel
+def no_pair(a, b, goal, rounding):
+    """(closed, lower bound of the distance) of two parts by their tangent planes' bounds."""
+    qa, qb = middle(a.box), middle(b.box)
+    ja, jb = leaf_jet(a.side, a.leaf, qa[0], qa[1]), leaf_jet(b.side, b.leaf, qb[0], qb[1])
+    delta = sub(jb[0], ja[0])
+    length = norm(delta)
+    ha = (0.5 * (a.box.u1 - a.box.u0), 0.5 * (a.box.v1 - a.box.v0))
+    hb = (0.5 * (b.box.u1 - b.box.u0), 0.5 * (b.box.v1 - b.box.v0))
+    reach = reach_of(a.side, a.leaf, ha[0], ha[1]) + reach_of(b.side, b.leaf, hb[0], hb[1])
+    if length == 0.0:
+        return False, 0.0
+    n = scale(1.0 / length, delta)
+    low = max(length - reach, 0.0)
+    flat = length - along(a.side, a.leaf, ja, n, ha) - along(b.side, b.leaf, jb, n, hb)
+    low = max(low, flat) - rounding
+    if low >= goal:
+        return True, low
+    if length > reach + rounding and (
+        slanted(a, ja, delta, length, reach) or slanted(b, jb, delta, length, reach)
+    ):
+        return True, low
+    return False, max(low, 0.0)
+
+
+@kernel
+def along(side, leaf, jet, n, h):
+    """How far a box reaches from its middle along n, at most."""
+    o, m = leaf_reals(side, leaf), side.numbers
+    second = m[o + S.SECOND] * h[0] * h[0] + m[o + S.SECOND + 2] * h[1] * h[1]
+    second += 2.0 * m[o + S.SECOND + 1] * h[0] * h[1]
+    return abs(dot(n, jet[1])) * h[0] + abs(dot(n, jet[2])) * h[1] + 0.5 * second
+
+
+@kernel
+def put_pair(work, n, box_a, box_b, low):
+    o = PAIR_REALS * n
+    work[o], work[o + 1], work[o + 2], work[o + 3] = box_a.u0, box_a.u1, box_a.v0, box_a.v1
+    work[o + 4], work[o + 5], work[o + 6], work[o + 7] = box_b.u0, box_b.u1, box_b.v0, box_b.v1
+    work[o + 8] = low
+
+
+@kernel
+def split(box, by_u):
+    if by_u:
+        m = 0.5 * (box.u0 + box.u1)
+        return S.Box(box.u0, m, box.v0, box.v1), S.Box(m, box.u1, box.v0, box.v1)
+    m = 0.5 * (box.v0 + box.v1)
+    return S.Box(box.u0, box.u1, box.v0, m), S.Box(box.u0, box.u1, m, box.v1)
+
+
+@kernel
+def widths(side, leaf, box):
+    o, m = leaf_reals(side, leaf), side.numbers
+    return m[o + S.FIRST] * (box.u1 - box.u0), m[o + S.FIRST + 1] * (box.v1 - box.v0)
+
+
+@kernel
+def nearest_of(a, b, counts):
+    """(parameters, distance) of a local minimum over two parts, from their middles."""
+    start = (*middle(a.box), *middle(b.box))
+    return nearest(a.side, a.leaf, a.box, b.side, b.leaf, b.box, start, counts)
+
+
+@kernel
+def keep_found(a, b, q, distance, best, minima):
+    """Keep a pair that is as near as the nearest, if both points are on the solids."""
+    if distance <= best[LEAST] + best[TOLERANCE] and (
+        on_solid(a.side, a.leaf, q[0], q[1]) and on_solid(b.side, b.leaf, q[2], q[3])
+    ):
+        keep(best, minima, a.leaf, b.leaf, q, distance)
+    if best[LEAST] <= best[TOLERANCE]:
+        best[MET] = 1.0
+
+
+@kernel
+def closed_by_any(a, b, best, minima, counts):
+    """Is a pair of parts closed? Nearer points that are found are kept."""
+    q, distance = nearest_of(a, b, counts)
+    keep_found(a, b, q, distance, best, minima)
+    if best[MET] > 0.0:
+        return True
+    goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
+    if by_own_surface(goal, a, b, (q[2], q[3]), counts):
+        return True
+    if by_own_surface(goal, b, a, (q[0], q[1]), counts):
+        return True
+    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), best, counts):
+        return True
+    wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
+    if wa == a.leaf and wb == b.leaf and distance >= goal:
+        return False
+    at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+    return by_witness(goal, a, b, (wa, wb, at), best, counts)
+
+
+@kernel
+def put_halves(a, b, best, work, count, low):
+    """Cut the longer part in two; the new count of pairs. One too short to cut stays open."""
+    au, av = widths(a.side, a.leaf, a.box)
+    bu, bv = widths(b.side, b.leaf, b.box)
+    if max(max(au, av), max(bu, bv)) <= SHORTEST * best[SIZE]:
+        best[OPEN] = min(best[OPEN], low)
+        return count
+    if max(au, av) >= max(bu, bv):
+        first, second = split(a.box, au >= av)
+        put_pair(work, count, first, b.box, low)
+        put_pair(work, count + 1, second, b.box, low)
+    else:
+        first, second = split(b.box, bu >= bv)
+        put_pair(work, count, a.box, first, low)
+        put_pair(work, count + 1, a.box, second, low)
+    return count + 2
+
+
+@kernel
+def close_leaves(a, leaf_a, b, leaf_b, best, minima, work, counts):
+    """Close a pair of leaves, cutting it where it has to be; what stays open lowers best[OPEN]."""
+    put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), 0.0)
+    count = 1
+    while count > 0 and best[MET] == 0.0:
+        count -= 1
+        o = PAIR_REALS * count
+        pa = S.Part(a, leaf_a, S.Box(work[o], work[o + 1], work[o + 2], work[o + 3]))
+        pb = S.Part(b, leaf_b, S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7]))
+        goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
+        done, low = no_pair(pa, pb, goal, best[ROUNDING])
+        low = max(low, work[o + 8])
+        if done:
+            continue
+        if counts[0] > best[BUDGET] or count >= MOST_PAIRS - 2:
+            best[OPEN] = min(best[OPEN], low)
+            continue
+        if (
+            trim_state(a, leaf_a, pa.box) == OUTSIDE_TRIM
+            or trim_state(b, leaf_b, pb.box) == OUTSIDE_TRIM
+        ):
+            continue
+        if closed_by_any(pa, pb, best, minima, counts):
+            continue
+        counts[4] += 1
+        count = put_halves(pa, pb, best, work, count, low)

@@ -1,0 +1,88 @@
+"""The least distance of two solids' boundaries: best first over their trees, then each pair of
+leaves that is left is closed."""
+
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
+from standoff.kernels.solids.spatial_closing import (
+    LEAST,
+    MET,
+    OPEN,
+    ROUNDING,
+    TOLERANCE,
+    close_leaves,
+    keep_found,
+    nearest_of,
+    no_pair,
+)
+from standoff.kernels.solids.spatial_pieces import leaf_box
+
+
+@kernel
+def node_ints(side, node):
+    return side.own[S.NODES] + S.NODE_INTS * node
+
+
+@kernel
+def offer(a, i, b, j, best, heap, count, counts):
+    """Put a pair of nodes into the heap unless it cannot hold a nearest pair; its new count."""
+    keys, firsts, others, limit = heap
+    counts[2] += 1
+    gap = gap_of(a, i, b, j) - best[ROUNDING]
+    if gap > best[LEAST] + best[TOLERANCE] or not admits(a, i, b, j, gap):
+        return count
+    if count >= limit:
+        best[OPEN] = min(best[OPEN], max(gap, 0.0))
+        return count
+    return push(keys, firsts, others, count, gap, i, j)
+
+
+@kernel
+def search(a, b, best, minima, heap, room, counts):
+    """Fill `best` and `minima`; best[OPEN] is then a proven lower bound of what was not closed.
+
+    room: what holds the pairs of leaves that are left, how many fit, and work space."""
+    pairs, _, work = room
+    count = offer(a, 0, b, 0, best, heap, 0, counts)
+    left = 0
+    while count > 0 and best[MET] == 0.0:
+        key, i, j, count = take(heap[0], heap[1], heap[2], count)
+        if key > best[LEAST] + best[TOLERANCE]:
+            break
+        ra, rb = node_ints(a, i), node_ints(b, j)
+        leaf_a, leaf_b = a.own[ra + 2], b.own[rb + 2]
+        if leaf_a >= 0 and leaf_b >= 0:
+            pa = S.Part(a, leaf_a, leaf_box(a, leaf_a))
+            pb = S.Part(b, leaf_b, leaf_box(b, leaf_b))
+            left = visit(pa, pb, key, best, minima, room, left, counts)
+            continue
+        if leaf_b >= 0 or (leaf_a < 0 and node_reach(a, i) >= node_reach(b, j)):
+            count = offer(a, a.own[ra], b, j, best, heap, count, counts)
+            count = offer(a, a.own[ra + 1], b, j, best, heap, count, counts)
+        else:
+            count = offer(a, i, b, b.own[rb], best, heap, count, counts)
+            count = offer(a, i, b, b.own[rb + 1], best, heap, count, counts)
+    for k in range(left):
+        goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
+        if pairs[3 * k + 2] < goal and best[MET] == 0.0:
+            counts[3] += 1
+            close_leaves(a, int(pairs[3 * k]), b, int(pairs[3 * k + 1]), best, minima, work, counts)
+
+
+@kernel
+def visit(a, b, key, best, minima, room, left, counts):
+    """Look for nearer points in a pair of leaves, and list it; how many are listed."""
+    pairs, most, _ = room
+    done, low = no_pair(a, b, best[LEAST] + best[TOLERANCE], best[ROUNDING])
+    if done:
+        return left
+    q, distance = nearest_of(a, b, counts)
+    keep_found(a, b, q, distance, best, minima)
+    low = max(max(key, low), 0.0)
+    if low >= best[LEAST] - best[TOLERANCE] + best[ROUNDING]:
+        return left
+    if left >= most:
+        best[OPEN] = min(best[OPEN], low)
+        return left
+    pairs[3 * left], pairs[3 * left + 1], pairs[3 * left + 2] = a.leaf, b.leaf, low
+    return left + 1

@@ -1,0 +1,1 @@
+"""Planar solids: loops of curves, not necessarily convex."""

@@ -1,0 +1,111 @@
+"""The packed boundary of a planar solid: what compiled loops read."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.entries import planar_solids as entries
+from standoff.kernels.solids import planar_layout as P
+from standoff.solids.planar.loops import Loop, packed_loop
+from standoff.solids.planar.tolerances import BOUND_ROUNDED
+from standoff.solids.planar.tree import built, leaf_radii
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Outline(NamedTuple):
+    """Arrays of a boundary, read-only.
+
+    Attributes
+    ----------
+    reals, leaves, leaf_ints, nodes, node_ints : (n,) arrays
+        See ``kernels.solids.planar_layout``.
+    low, high : (2,) arrays
+        A box around the boundary.
+    """
+
+    reals: Array
+    leaves: Array
+    leaf_ints: Ints
+    nodes: Array
+    node_ints: Ints
+    low: Array
+    high: Array
+
+    @property
+    def arrays(self) -> tuple[Array, Array, Ints, Array, Ints]:
+        """What the kernels take."""
+        return self[:5]
+
+    @property
+    def n_leaves(self) -> int:
+        return len(self.leaves) // P.N_LEAF
+
+    @property
+    def size(self) -> float:
+        """The box's diagonal, length."""
+        return float(np.linalg.norm(self.high - self.low))
+
+    @property
+    def extent(self) -> float:
+        """The greatest coordinate and the size, length."""
+        return self.size + float(np.abs([self.low, self.high]).max())
+
+    def leaf_int(self, leaf: int, which: int) -> int:
+        return int(self.leaf_ints[P.N_LEAF_INT * leaf + which])
+
+    def leaf_real(self, leaf: int, which: int) -> float:
+        return float(self.leaves[P.N_LEAF * leaf + which])
+
+    def foot(self, points: Array, tolerance: float) -> tuple[Array, Ints, Array]:
+        """Of points (n, 2): distances from the boundary, whether inside (0 or 1), and rows of
+        (proven distance, foot point, leaf, parameter)."""
+        n = len(points)
+        distances, inside, feet = np.empty(n), np.empty(n, dtype=np.int64), np.empty((n, 5))
+        extent = self.extent + float(np.abs(points).max(initial=0.0))
+        proof = max(tolerance, BOUND_ROUNDED * extent)
+        entries.points(self.arrays, points, proof, extent, distances, inside, feet)
+        return distances, inside, feet
+
+
+def packed_outline(loops: tuple[Loop, ...]) -> Outline:
+    """Pack loops, the solid on the left of each."""
+    data: list[Array] = []
+    leaves: list[Array] = []
+    ints: list[Ints] = []
+    ranges: list[tuple[int, int]] = []
+    n_data = n_curves = n_leaves = 0
+    for loop in loops:
+        offsets = []
+        for curve in loop.curves:
+            offsets.append(n_data)
+            data.append(np.asarray(curve.data, dtype=np.float64))
+            n_data += len(curve.data)
+        part = packed_loop(loop, n_curves, offsets, n_leaves)
+        ranges.append((n_leaves, n_leaves + len(part.reals)))
+        leaves.append(part.reals)
+        ints.append(part.ints)
+        n_curves += len(loop.curves)
+        n_leaves += len(part.reals)
+    rows = np.concatenate(leaves)
+    nodes, node_ints = built(rows, ranges)
+    radii = leaf_radii(rows)[:, None]
+    ends = rows[:, P.START : P.START + 2], rows[:, P.END : P.END + 2]
+    low = np.minimum(*ends) - radii
+    high = np.maximum(*ends) + radii
+    packed = (
+        np.concatenate(data),
+        rows.ravel(),
+        np.concatenate(ints).ravel(),
+        nodes.ravel(),
+        node_ints.ravel(),
+        low.min(axis=0),
+        high.max(axis=0),
+    )
+    for array in packed:
+        array.flags.writeable = False
+    return Outline(*packed)

@@ -1,0 +1,292 @@
+"""The proven distance of two planar solids at two poses."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.features import NO_FEATURE
+from standoff.kernels.entries import planar_solids as entries
+from standoff.kernels.solids import planar_search as S
+from standoff.motion import PoseLike
+from standoff.solids.answer import (
+    Continuum,
+    NearestPair,
+    Overlap,
+    SolidCounts,
+    SolidProximity,
+)
+from standoff.solids.planar.continua import continuum_of, distinct
+from standoff.solids.planar.pair import Queried, Shape
+from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_TO
+from standoff.tracking.derivatives import Smoothness
+from standoff.tracking.inputs import check_in_plane, flat_pose
+from standoff.tracking.status import Status
+
+Array = NDArray[np.float64]
+
+CAPACITY = 1 << 17  # pairs of pieces that may be open or were
+MOST_FOUND = 2048
+MOST_EVALUATIONS = 4_000_000
+MOST_SQUARES = 1200
+UNSEEN: Array = np.full(3, np.nan)
+
+
+class Asked(NamedTuple):
+    """Options of ``so.solids.distance``."""
+
+    within: float | None = None
+    tolerance: float | None = None
+    minima: float | None = None
+    deadline: int | None = None
+
+
+DEFAULT = Asked()
+
+
+class Searched(NamedTuple):
+    """What a search has come to; lengths, and the rows of `planar_search.N_FOUND` numbers."""
+
+    ended: int
+    proven: float
+    least: float
+    found: Array
+    counts: NDArray[np.int64]
+
+
+def planar_distance(
+    first: Shape, second: Shape, pose_a: PoseLike, pose_b: PoseLike, asked: Asked = DEFAULT
+) -> SolidProximity:
+    """See ``so.solids.distance``."""
+    within, tolerance, minima, deadline = asked
+    flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
+    check_in_plane(flat_a, flat_b)
+    apart = float(np.linalg.norm(flat_b[9:] - flat_a[9:]))
+    extent = first.outline.extent + second.outline.extent + apart
+    size = max(first.size, second.size)
+    proof = PROVEN_TO * size if tolerance is None else tolerance
+    proof = max(proof, 4.0 * BOUND_ROUNDED * extent)
+    budget = MOST_EVALUATIONS if deadline is None else deadline
+    pair = Queried(first, second, np.concatenate([flat_a, flat_b]), proof, extent, budget)
+    horizon = np.inf if within is None else within
+    searched = search(pair, minima or 0.0, horizon, meeting=proof)
+    if searched.ended == S.BEYOND:
+        return _beyond(pair, searched)
+    if searched.ended == S.MET:
+        return _meeting(pair, minima or 0.0)
+    inside = _inside(pair) if searched.proven > 0.0 else (False, False)
+    if all(inside):
+        return _overlapping(pair, searched)
+    return _apart(pair, searched, ("B" if inside[0] else "A") if any(inside) else "", minima)
+
+
+def search(pair: Queried, above: float, horizon: float, meeting: float) -> Searched:
+    """The nearest pairs of the boundaries, and what is proven of their distance."""
+    rows, heap = np.empty(CAPACITY * S.N_ROW), np.empty(CAPACITY, dtype=np.int64)
+    found, counts = np.empty(MOST_FOUND * S.N_FOUND), np.zeros(S.N_COUNT, dtype=np.int64)
+    sought = (pair.tolerance, pair.roundoff, pair.extent, above, horizon, meeting)
+    ended, proven, least, n = entries.nearest(
+        pair.a.outline.arrays,
+        pair.b.outline.arrays,
+        pair.poses,
+        sought,
+        pair.budget,
+        (rows, heap, found),
+        counts,
+    )
+    pairs = found[: n * S.N_FOUND].reshape(n, S.N_FOUND)
+    return Searched(ended, proven, least, pairs[np.argsort(pairs[:, 0], kind="stable")], counts)
+
+
+def _inside(pair: Queried) -> tuple[bool, bool]:
+    """(is a loop of B inside A's material, is one of A inside B's), of boundaries that do not
+    meet: one point of each loop decides."""
+    R_a, R_b = (pair.poses[k : k + 9].reshape(3, 3)[:2, :2] for k in (0, 12))
+    p_a, p_b = pair.poses[9:11], pair.poses[21:23]
+    points_a = (np.array([_first(loop) for loop in pair.a.loops]) @ R_a.T + p_a - p_b) @ R_b
+    points_b = (np.array([_first(loop) for loop in pair.b.loops]) @ R_b.T + p_b - p_a) @ R_a
+    in_a = pair.a.outline.foot(np.ascontiguousarray(points_b), pair.tolerance)[1]
+    in_b = pair.b.outline.foot(np.ascontiguousarray(points_a), pair.tolerance)[1]
+    return bool(in_a.any()), bool(in_b.any())
+
+
+def _first(loop: Any) -> Array:
+    curve = loop.curves[0]
+    point: Array = curve.point(curve.first)[:2]
+    return point
+
+
+def _counts(counts: NDArray[np.int64]) -> SolidCounts:
+    return SolidCounts(*(int(n) for n in counts))
+
+
+def _pairs(pair: Queried, rows: Array) -> tuple[NearestPair, ...]:
+    return tuple(_nearest(pair, row) for row in rows)
+
+
+def _nearest(pair: Queried, row: Array) -> NearestPair:
+    feature_a, at_a = pair.a.feature_at(int(row[10]), float(row[8]))
+    feature_b, at_b = pair.b.feature_at(int(row[11]), float(row[9]))
+    return NearestPair(
+        float(row[0]),
+        float(min(row[1], row[0])) - pair.slack,
+        pair.world(row[2:4]),
+        pair.world(row[4:6]),
+        pair.turned(row[6:8]),
+        feature_a,
+        feature_b,
+        at_a,
+        at_b,
+    )
+
+
+def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None) -> SolidProximity:
+    """Boundaries that do not meet: apart, one in a hole of the other, or one in its material."""
+    near = searched.found[searched.found[:, 0] <= searched.least + pair.tolerance]
+    rows = distinct(pair, near, searched.found if minima else near)
+    continuum = continuum_of(pair, near, searched.least)
+    proven = searched.least - max(searched.proven, 0.0) <= 2.0 * pair.tolerance
+    if not proven:
+        status = Status.DEADLINE if searched.ended == S.SPENT else Status.WITHIN
+    elif inside:
+        status = Status.CONTAINED
+    else:
+        status = Status.CONTINUUM if continuum else Status.CONVERGED
+    pairs = _pairs(pair, rows)
+    ties = int(np.count_nonzero(rows[:, 0] <= searched.least + pair.tolerance))
+    smooth = Smoothness.SMOOTH
+    if continuum:
+        smooth = Smoothness.PARTIAL
+    elif ties > 1:
+        smooth = Smoothness.ONE_SIDED
+    bounds = searched.proven, searched.least
+    return _answer(pair, status, bounds, pairs, smooth, _counts(searched.counts), continuum, inside)
+
+
+def _answer(
+    pair: Queried,
+    status: Status,
+    bounds: tuple[float, float],
+    pairs: tuple[NearestPair, ...],
+    smooth: Smoothness,
+    counts: SolidCounts,
+    more: Continuum | Overlap | None = None,
+    inside: str = "",
+) -> SolidProximity:
+    lower, distance = bounds
+    continuum = more if isinstance(more, Continuum) else None
+    overlap = more if isinstance(more, Overlap) else None
+    side: Literal["A", "B", ""] = "A" if inside == "A" else "B" if inside == "B" else ""
+    best = pairs[0] if pairs else _unseen()
+    gradient = np.full(12, np.nan)
+    if pairs:
+        arms = np.concatenate(
+            [
+                best.normal,
+                best.point_a - pair.poses[9:12],
+                best.point_b - pair.poses[21:24],
+            ]
+        )
+        entries.gradient(arms, gradient)
+    lower -= pair.slack
+    return SolidProximity(
+        status=status,
+        distance=distance,
+        lower_bound=max(lower, 0.0) if overlap is None and status is not Status.TOUCHING else lower,
+        upper_bound=distance + pair.slack,
+        slack=pair.slack,
+        point_a=best.point_a,
+        point_b=best.point_b,
+        normal=best.normal,
+        feature_a=best.feature_a,
+        feature_b=best.feature_b,
+        parameters_a=best.parameters_a,
+        parameters_b=best.parameters_b,
+        minima=pairs,
+        continuum=continuum,
+        overlap=overlap,
+        inside=side,
+        gradient_rows=gradient,
+        smoothness=smooth if pairs else Smoothness.UNDEFINED,
+        counts=counts,
+        poses=(pair.poses[:12], pair.poses[12:]),
+    )
+
+
+def _unseen() -> NearestPair:
+    empty = UNSEEN.copy()
+    return NearestPair(np.nan, np.nan, empty, empty, empty, NO_FEATURE, NO_FEATURE, (), ())
+
+
+def _beyond(pair: Queried, searched: Searched) -> SolidProximity:
+    bounds = searched.proven, np.inf
+    return _answer(pair, Status.FAR, bounds, (), Smoothness.UNDEFINED, _counts(searched.counts))
+
+
+def _meeting(pair: Queried, above: float) -> SolidProximity:
+    """Boundaries that meet: all places, then the largest ball found inside both."""
+    searched = search(pair, above, np.inf, meeting=-1.0)
+    overlap = common_ball(pair, searched)
+    if overlap is not None and overlap.radius > pair.tolerance:
+        return _overlapping(pair, searched, overlap)
+    near = searched.found[searched.found[:, 0] <= searched.least + pair.tolerance]
+    rows = distinct(pair, near, searched.found if above else near)
+    continuum = continuum_of(pair, near, searched.least)
+    smooth = Smoothness.PARTIAL if continuum else Smoothness.SMOOTH
+    if len(rows) > 1 and not continuum:
+        smooth = Smoothness.ONE_SIDED
+    bounds = -pair.tolerance, searched.least
+    counts = _counts(searched.counts)
+    return _answer(pair, Status.TOUCHING, bounds, _pairs(pair, rows), smooth, counts, continuum)
+
+
+def common_ball(pair: Queried, searched: Searched) -> Overlap | None:
+    """The largest ball found inside both, proven to be there."""
+    R = pair.poses[:9].reshape(3, 3)[:2, :2].T @ pair.poses[12:21].reshape(3, 3)[:2, :2]
+    shift = pair.poses[:9].reshape(3, 3)[:2, :2].T @ (pair.poses[21:23] - pair.poses[9:11])
+    a, b = pair.a.outline, pair.b.outline
+    corners = np.array([(x, y) for x in (b.low[0], b.high[0]) for y in (b.low[1], b.high[1])])
+    corners = corners @ R.T + shift
+    low = np.maximum(a.low, corners.min(axis=0))
+    high = np.minimum(a.high, corners.max(axis=0))
+    if (low > high).any():
+        return None
+    middle, half = 0.5 * (low + high), 0.5 * float((high - low).max())
+    rows, heap = np.empty((4 * MOST_SQUARES) * S.N_ROW), np.empty(4 * MOST_SQUARES, dtype=np.int64)
+    found = np.ascontiguousarray(searched.found).ravel()
+    sought = (*middle, half, pair.tolerance, pair.extent, BALL_PART)
+    x, y, radius, _ = entries.common_ball(
+        a.arrays,
+        b.arrays,
+        pair.poses,
+        sought,
+        len(searched.found),
+        MOST_SQUARES,
+        (rows, heap, found),
+    )
+    radius -= pair.roundoff
+    if not radius > 0.0:
+        return None
+    return Overlap(pair.world((x, y)), float(radius))
+
+
+def _overlapping(
+    pair: Queried, searched: Searched, overlap: Overlap | None = None
+) -> SolidProximity:
+    ball = overlap or common_ball(pair, searched)
+    distance = 0.0 if ball is None else -2.0 * ball.radius
+    bounds = -np.inf, distance
+    rows = distinct(pair, searched.found, searched.found)[:1] if len(searched.found) else ()
+    pairs = _pairs(pair, np.asarray(rows))
+    counts = _counts(searched.counts)
+    return _answer(
+        pair,
+        Status.OVERLAPPING,
+        bounds,
+        pairs,
+        Smoothness.UNDEFINED,
+        counts,
+        ball,
+    )

@@ -1,0 +1,373 @@
+"""Planar solids: outer and inner loops of curves in z = 0, convex or not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shape_of, shown
+from standoff.errors import BodyError, StandoffTypeError
+from standoff.geometry.curves import Curve
+from standoff.kernels.solids import planar_layout as P
+from standoff.kernels.solids.planar_tolerances import PIECE_END
+from standoff.motion import PoseLike
+from standoff.read_only import KeepsReadOnly
+from standoff.solids.answer import SolidProximity
+from standoff.solids.planar.area import area_of
+from standoff.solids.planar.loops import Loop, read_loop
+from standoff.solids.planar.nesting import check_simple, nested, oriented
+from standoff.solids.planar.of_bodies import loops_of_body
+from standoff.solids.planar.outline import Outline, packed_outline
+from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
+
+Array = NDArray[np.float64]
+VertexKind = Literal["convex", "reflex", "smooth"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PlanarSolid(KeepsReadOnly):
+    """A planar solid in z = 0: what lies between loops of curves. Immutable.
+
+    Make one with `from_loops`, `from_body` or ``so.solids.read_dxf``.
+
+    Attributes
+    ----------
+    name : str
+    loops : tuple of Loop
+        The curves in the direction in which the solid lies on their left: the outer loop
+        counterclockwise, inner ones clockwise. Edges are numbered through all loops in this
+        order; vertex k is where edge k begins.
+    area : float
+        By Green's theorem, length².
+    area_error : float
+        Proven bound of its error, length².
+    slack : float
+        How far the boundary may be from what it stands for: ends that miss each other, and knots
+        that were removed from splines; length.
+    kinds : tuple of "convex", "reflex" or "smooth"
+        Of the vertices: a corner that points outward, one that points inward, or none.
+    outline : Outline
+        What the compiled loops read.
+    """
+
+    name: str
+    loops: tuple[Loop, ...]
+    area: float
+    area_error: float
+    slack: float
+    kinds: tuple[VertexKind, ...]
+    outline: Outline = field(repr=False)
+
+    @classmethod
+    def from_loops(
+        cls,
+        outer: Sequence[Any],
+        inner: Sequence[Sequence[Curve]] = (),
+        *,
+        name: str = "solid",
+        join: float | None = None,
+    ) -> PlanarSolid:
+        """A solid from its loops.
+
+        Parameters
+        ----------
+        outer : sequence of Curve, or of such sequences
+            The outer loop, in either direction, each curve in either direction; lengths. Or all
+            loops in one list: which one is the outer is then found.
+        inner : sequence of sequences of Curve, optional
+            Holes.
+        name : str, optional
+        join : float, optional
+            By how much ends that meet may miss each other, length; 1e-9 of the loop's size by
+            default. What they miss is the solid's `slack`.
+
+        Returns
+        -------
+        PlanarSolid
+
+        Raises
+        ------
+        BodyError
+            A loop that is open, meets itself or another, has a curve of no length or out of
+            z = 0; a hole outside, or in another hole. The text has the place.
+        TypeError
+            Something that is not a curve.
+        """
+        given = tuple(outer)
+        limit = None if join is None else positive(join, "join")
+        if given and not any(isinstance(each, Curve) for each in given):
+            found = solids_of(given, name=name, join=limit)
+            if len(found) != 1:
+                raise BodyError(
+                    f"{len(given)} loops make {len(found)} separate solids: make one of each, "
+                    "with PlanarSolid.from_loops(outer, inner).",
+                    "outer",
+                    outer,
+                )
+            return found[0]
+        first = read_loop(given, "the outer loop", limit)
+        holes = [read_loop(each, f"inner loop {k}", limit) for k, each in enumerate(inner)]
+        return cls._made(oriented(first, holes), name)
+
+    @classmethod
+    def from_body(cls, body: Body, *, name: str = "") -> PlanarSolid:
+        """A planar convex `Body` as a solid.
+
+        Parameters
+        ----------
+        body : Body
+            Planar, with edges; its rounding is kept where its edges are lines and arcs of circles.
+        name : str, optional
+            The body's own, if not given.
+
+        Returns
+        -------
+        PlanarSolid
+
+        Raises
+        ------
+        BodyError
+            A spatial body, one without area, or rounded edges of other kinds.
+        TypeError
+            Not a body.
+        """
+        if not isinstance(body, Body):
+            raise StandoffTypeError(f"{body!r} is no Body: give a planar one.", "body", body)
+        return cls.from_loops(loops_of_body(body), name=name or body.name)
+
+    @classmethod
+    def of(cls, given: Any, name: str = "solid") -> PlanarSolid:
+        """A planar solid as it is, or a planar `Body` as one.
+
+        Parameters
+        ----------
+        given : PlanarSolid or Body
+        name : str, optional
+            Of the argument, for the error.
+
+        Returns
+        -------
+        PlanarSolid
+
+        Raises
+        ------
+        TypeError
+            Something else.
+        BodyError
+            As `from_body`.
+        """
+        if isinstance(given, PlanarSolid):
+            return given
+        if isinstance(given, Body):
+            return cls.from_body(given)
+        raise StandoffTypeError(
+            f"{name} is {shown(given)}: give a PlanarSolid or a planar Body.", name, given
+        )
+
+    @classmethod
+    def _made(cls, loops: tuple[Loop, ...], name: str) -> PlanarSolid:
+        outline = packed_outline(loops)
+        check_simple(outline, loops)
+        area, error = area_of(loops)
+        moved = max(curve.moved for loop in loops for curve in loop.curves)
+        slack = max(loop.gap for loop in loops) + moved
+        kinds = tuple(kind for loop in loops for kind in kinds_of(loop))
+        return cls(name, loops, area, error, slack, kinds, outline)
+
+    @property
+    def dimension(self) -> int:
+        """2."""
+        return 2
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around it, length."""
+        return self.outline.size
+
+    @property
+    def n_edges(self) -> int:
+        """Number of curves of all loops."""
+        return sum(len(loop.curves) for loop in self.loops)
+
+    @property
+    def edges(self) -> tuple[Curve, ...]:
+        """The curves of all loops, by their numbers."""
+        return tuple(curve for loop in self.loops for curve in loop.curves)
+
+    def cold_query(
+        self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
+    ) -> SolidProximity:
+        """The distance of two planar solids, or of one and a planar `Body`; see
+        ``so.solids.distance``.
+
+        Parameters
+        ----------
+        a, b : PlanarSolid or Body
+            One of them this one.
+        pose_a, pose_b : Pose or what ``Pose.of`` reads
+        within : float or None
+            Horizon, length.
+
+        Returns
+        -------
+        SolidProximity
+        """
+        first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
+        return planar_distance(first, second, pose_a, pose_b, Asked(within))
+
+    def signed_distance(
+        self, points: Any, *, gradients: bool = False
+    ) -> Array | tuple[Array, Array]:
+        """Signed distances of points from the boundary, negative inside.
+
+        Each is proven to 1e-10 of the size: no boundary point is nearer by more.
+
+        Parameters
+        ----------
+        points : (n, 2) or (n, 3) array_like
+            In the solid's frame, length; z = 0.
+        gradients : bool, optional
+            Return the gradients too.
+
+        Returns
+        -------
+        (n,) array, or a pair of (n,) and (n, 2) arrays
+            Lengths; and unit vectors away from the solid's inside: at points that have several
+            nearest boundary points that of one of them, and NaN on the boundary.
+
+        Raises
+        ------
+        ValueError
+            A wrong shape, numbers that are not finite, points out of z = 0.
+        """
+        at = _points(points)
+        distances, inside, feet = self.outline.foot(at, PROVEN_TO * self.size)
+        sign = np.where(inside == 1, -1.0, 1.0)
+        if not gradients:
+            return sign * distances
+        with np.errstate(invalid="ignore", divide="ignore"):
+            away = sign[:, None] * (at - feet[:, 1:3]) / distances[:, None]
+        away[distances == 0.0] = np.nan
+        return sign * distances, away
+
+    def contains(self, points: Any) -> NDArray[np.bool_]:
+        """Are points inside, or on the boundary?
+
+        Parameters
+        ----------
+        points : (n, 2) or (n, 3) array_like
+            In the solid's frame, length; z = 0.
+
+        Returns
+        -------
+        (n,) array of bool
+            On the boundary to within 1e-14 of the size counts as inside.
+
+        Raises
+        ------
+        ValueError
+            As for `signed_distance`.
+        """
+        at = _points(points)
+        distances, inside, _ = self.outline.foot(at, PROVEN_TO * self.size)
+        found: NDArray[np.bool_] = (inside == 1) | (distances <= self.outline.leaf_real(0, P.PAD))
+        return found
+
+    def feature_at(self, leaf: int, t: float) -> tuple[Feature, tuple[float, ...]]:
+        """The edge or vertex of a point of the boundary, and its parameter.
+
+        Parameters
+        ----------
+        leaf : int
+            Of the outline.
+        t : float
+            Parameter of its curve.
+
+        Returns
+        -------
+        feature : Feature
+        parameters : tuple of float
+            The curve's parameter; empty for a vertex.
+        """
+        outline = self.outline
+        for end, owner in ((P.FROM, leaf), (P.UNTIL, outline.leaf_int(leaf, P.AFTER))):
+            vertex = outline.leaf_int(owner, P.VERTEX)
+            length = abs(outline.leaf_real(leaf, P.UNTIL) - outline.leaf_real(leaf, P.FROM))
+            near = abs(t - outline.leaf_real(leaf, end)) <= PIECE_END * length
+            if near and vertex >= 0 and self.kinds[vertex] != "smooth":
+                return Feature("vertex", vertex), ()
+        return Feature("edge", outline.leaf_int(leaf, P.CURVE)), (t,)
+
+    def __repr__(self) -> str:
+        inner = len(self.loops) - 1
+        holes = f", {inner} inner loop{'s' if inner > 1 else ''}" if inner else ""
+        return f"PlanarSolid({self.name!r}, {self.n_edges} edges{holes}, area={self.area:.6g})"
+
+
+def solids_of(
+    loops: Sequence[Any], *, name: str = "solid", join: float | None = None
+) -> tuple[PlanarSolid, ...]:
+    """The separate solids that loops make, those inside others being holes.
+
+    Parameters
+    ----------
+    loops : sequence of sequences of Curve
+    name : str, optional
+        Of the first; the others have a number after it.
+    join : float, optional
+        See `PlanarSolid.from_loops`.
+
+    Returns
+    -------
+    tuple of PlanarSolid
+
+    Raises
+    ------
+    BodyError
+        See `PlanarSolid.from_loops`.
+    """
+    read = [read_loop(each, f"loop {k}", join) for k, each in enumerate(loops)]
+    found = enumerate(nested(read))
+    return tuple(PlanarSolid._made(each, f"{name} {k + 1}" if k else name) for k, each in found)
+
+
+def kinds_of(loop: Loop) -> list[VertexKind]:
+    """What the boundary does where each curve of a loop begins."""
+    kinds: list[VertexKind] = []
+    runs = list(zip(loop.curves, loop.backward, strict=True))
+    last = [_tangent(curve, not backward, backward) for curve, backward in runs]
+    first = [_tangent(curve, backward, backward) for curve, backward in runs]
+    for k, out in enumerate(first):
+        into = last[k - 1]
+        turn = np.arctan2(into[0] * out[1] - into[1] * out[0], into @ out)
+        smooth = abs(turn) <= SMOOTH_TURN
+        kinds.append("smooth" if smooth else "convex" if turn > 0.0 else "reflex")
+    return kinds
+
+
+def _tangent(curve: Curve, at_last: bool, backward: bool) -> Array:
+    """The unit tangent at one end of a curve in the direction of its loop."""
+    rate = curve.jet(curve.last if at_last else curve.first)[1][:2]
+    tangent: Array = rate / np.linalg.norm(rate)
+    return -tangent if backward else tangent
+
+
+def _points(points: Any) -> Array:
+    columns = 3 if (shape_of(points) or ())[1:] == (3,) else 2
+    at = finite(points, "points", (-1, columns))
+    if columns == 3:
+        if at[:, 2].any():
+            raise BodyError(
+                "Points of a planar solid have z = 0: give them in its plane.", "points", points
+            )
+        at = at[:, :2]
+    return np.ascontiguousarray(at)

@@ -1,0 +1,334 @@
+"""Leaves of a solid: rectangles of its faces, intervals of its edges, and its vertices, with what
+is proven of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.face_leaves import FaceChart, face_charts
+from standoff.bodies.packed_parts import PackedParts
+from standoff.geometry.curves import ConicArc
+from standoff.geometry.patch_bounds import between
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import edge_jet, on_face
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.torus_potential import TORUS_THROUGH
+from standoff.solids.spatial.analytic import natural_of, round_arc
+from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
+from standoff.solids.spatial.tolerances import BOUND_INFLATION, COLLAPSED_FRAME, SMOOTH_JOIN
+from standoff.solids.spatial.trims import Piece, edge_ranges, pieces_of
+
+# Half angle of a leaf's cone of normals, radians.
+WIDEST = 0.5
+# Parts of the size: longest side of a leaf, and of one that a trimming curve cuts.
+LONGEST, LONGEST_CUT = 0.5, 0.12
+MOST_HALVINGS = 14
+ARC = 0.6  # radians
+UNKNOWN = np.pi
+# What stands in place of a kind of potential for an edge that is an arc of a circle.
+ROUND_ARC = -2
+
+
+@dataclass
+class Leaf:
+    """One leaf, as ``kernels.solids.spatial_layout`` packs it."""
+
+    dim: int
+    feature: int
+    chart: int
+    cut: bool
+    senses: int
+    pieces: list[int]
+    kind: int
+    reals: Array
+    centre: Array
+    axes: Array
+    half: Array
+    beside: int = -1
+
+
+def face_leaves(
+    boundary: PackedParts, chart: FaceChart, pieces: list[Piece], size: float
+) -> list[Leaf]:
+    """The leaves of one chart; pieces: of its trimming curves."""
+    own = [k for k, piece in enumerate(pieces) if piece.chart == chart.number]
+    natural = natural_of(chart)
+    found: list[Leaf] = []
+    waiting = _started(chart)
+    for depth in range(MOST_HALVINGS + 1):
+        waiting, cuts = _on_it(boundary, chart, waiting, pieces, own)
+        if not len(waiting):
+            break
+        bounds = chart.surface.bounds(waiting)
+        d = surface_derivatives(chart.surface, waiting)
+        wide = np.stack([d[:, 0] * (waiting[:, 1] - waiting[:, 0]),
+                         d[:, 1] * (waiting[:, 3] - waiting[:, 2])])  # fmt: skip
+        cut = np.array([len(c) > 0 for c in cuts])
+        too_long = wide.max(axis=0) > np.where(cut, LONGEST_CUT, LONGEST) * size
+        split = (bounds.angle > WIDEST) | too_long
+        if depth == MOST_HALVINGS:
+            split[:] = False
+        kept = np.flatnonzero(~split)
+        for k, box in zip(kept, _face_boxes(chart, waiting[kept]), strict=True):
+            cone = _face_cone(chart, bounds.axis[k], float(bounds.angle[k]))
+            reals = _leaf_reals(waiting[k], d[k], cone, natural[1])
+            found.append(
+                Leaf(2, chart.face, chart.number, len(cuts[k]) > 0, S.OUTSIDE | S.INSIDE,
+                     cuts[k], natural[0], reals, *box)
+            )  # fmt: skip
+        by_u = _bends_along_u(d, waiting, wide, bounds.angle > WIDEST)
+        waiting = _halves(waiting[split], by_u[split])
+    return found
+
+
+def _started(chart: FaceChart) -> Array:
+    """The chart's rectangle, in parts that no analytic break crosses."""
+    u0, u1, v0, v1 = chart.rectangle
+    if chart.surface.periodic:
+        u1 = min(u1, u0 + 2.0 * np.pi)
+    breaks = chart.surface.analytic_breaks()
+    us = [u0, *sorted(u for u in np.asarray(breaks[0]).tolist() if u0 < u < u1), u1]
+    vs = [v0, *sorted(v for v in np.asarray(breaks[1]).tolist() if v0 < v < v1), v1]
+    return np.array([[a, b, c, d] for a, b in pairwise(us) for c, d in pairwise(vs)])
+
+
+def _on_it(
+    boundary: PackedParts, chart: FaceChart, rows: Array, pieces: list[Piece], own: list[int]
+) -> tuple[Array, list[list[int]]]:
+    """The rectangles that may hold points of the face, and the pieces that may meet each."""
+    kept: list[Array] = []
+    cuts: list[list[int]] = []
+    low = np.array([pieces[k].low for k in own]).reshape(-1, 2)
+    high = np.array([pieces[k].high for k in own]).reshape(-1, 2)
+    for row in rows:
+        u0, u1, v0, v1 = row
+        meets = (low <= [u1, v1]).all(axis=1) & (high >= [u0, v0]).all(axis=1)
+        # a straight trim along the rectangle's side does not cut it
+        inner = (low < [u1, v1]).all(axis=1) & (high > [u0, v0]).all(axis=1)
+        middle = on_face(
+            boundary.ints, boundary.reals, chart.number, 0.5 * (u0 + u1), 0.5 * (v0 + v1)
+        )
+        if not meets.any() and not middle:
+            continue
+        if not inner.any():  # then it is on the face as its middle is, or off it
+            if middle:
+                kept.append(row)
+                cuts.append([])
+            continue
+        kept.append(row)
+        cuts.append([own[k] for k in np.flatnonzero(meets)])
+    return np.reshape(kept, (-1, 4)), cuts
+
+
+def _bends_along_u(
+    d: Array, rows: Array, wide: Array, bent: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    hu, hv = rows[:, 1] - rows[:, 0], rows[:, 3] - rows[:, 2]
+    with np.errstate(all="ignore"):
+        bend_u = (d[:, 2] / d[:, 0] + d[:, 3] / d[:, 1]) * hu
+        bend_v = (d[:, 4] / d[:, 1] + d[:, 3] / d[:, 0]) * hv
+    known = np.isfinite(bend_u) & np.isfinite(bend_v)
+    by_bend = np.where(known, bend_u >= bend_v, hu >= hv)
+    by_width = np.where(np.isfinite(wide).all(axis=0), wide[0] >= wide[1], hu >= hv)
+    return np.asarray(np.where(bent, by_bend, by_width))
+
+
+def _halves(rows: Array, by_u: NDArray[np.bool_]) -> Array:
+    first, second = rows.copy(), rows.copy()
+    u, v = 0.5 * (rows[:, 0] + rows[:, 1]), 0.5 * (rows[:, 2] + rows[:, 3])
+    first[by_u, 1], second[by_u, 0] = u[by_u], u[by_u]
+    first[~by_u, 3], second[~by_u, 2] = v[~by_u], v[~by_u]
+    return np.concatenate([first, second])
+
+
+def _face_cone(chart: FaceChart, axis: Array, angle: float) -> Array:
+    """Both cones: seen from outside and from inside."""
+    wide = angle + SMOOTH_JOIN if angle < UNKNOWN else UNKNOWN
+    out = chart.outward * axis
+    return np.array([*out, wide, *-out, wide])
+
+
+def _face_boxes(chart: FaceChart, rows: Array) -> list[tuple[Array, Array, Array]]:
+    """(centre, axes, half) of a box round each rectangle's piece of the surface."""
+    axes = []
+    for u0, u1, v0, v1 in rows.tolist():
+        _, xu, xv, *_ = chart.surface.jet(0.5 * (u0 + u1), 0.5 * (v0 + v1))
+        axes.append(frame_along(xu if np.linalg.norm(xu) > 0.0 else xv, xv))
+    if not axes:
+        return []
+    low, high = chart.surface.extents(rows, np.moveaxis(np.array(axes), 0, -1))
+    return [box_of(a, low[:, k], high[:, k]) for k, a in enumerate(axes)]
+
+
+def frame_along(first: Array, second: Array) -> Array:
+    """(3, 3) rows: an orthonormal frame along a vector and near another."""
+    scale = np.linalg.norm(first)
+    a = first / scale if scale > 0.0 else np.array([1.0, 0.0, 0.0])
+    b = second - (second @ a) * a
+    if np.linalg.norm(b) <= COLLAPSED_FRAME * max(float(np.linalg.norm(second)), 1e-300):
+        b = np.eye(3)[int(np.abs(a).argmin())]
+        b = b - (b @ a) * a
+    b = b / np.linalg.norm(b)
+    return np.stack([a, b, np.cross(a, b)])
+
+
+def box_of(axes: Array, low: Array, high: Array) -> tuple[Array, Array, Array]:
+    """(centre, axes, half) of a box from extents along its axes, grown for rounding."""
+    reach = np.abs([low, high]).max()
+    half = 0.5 * (high - low) + 8.0 * 2.3e-16 * reach
+    return axes.T @ (0.5 * (low + high)), axes, half
+
+
+def _leaf_reals(rect: Array, bounds: Array, cones: Array, natural: Array) -> Array:
+    reals = np.zeros(S.LEAF_STRIDE)
+    reals[S.RECT : S.RECT + 4] = rect
+    reals[S.FIRST : S.FIRST + 12] = bounds
+    reals[S.CONE_OUT : S.CONE_OUT + 8] = cones
+    reals[S.NATURAL_REALS : S.NATURAL_REALS + 9] = natural
+    return reals
+
+
+def _parts_of_edge(boundary: PackedParts, number: int) -> list[tuple[float, float]]:
+    """The parts of an edge that are leaves; none of a smooth one, whose points are its faces'."""
+    flags = _edge_flags(boundary, number)
+    if flags & L.SMOOTH and not flags & L.CREASED:
+        return []
+    return list(edge_ranges(boundary.edge_parts[number].curve, ARC, LONGEST * boundary.size))
+
+
+def _edge_flags(boundary: PackedParts, number: int) -> int:
+    row = int(boundary.ints[L.EDGES]) + L.EDGE_STRIDE * number
+    return int(boundary.ints[row + L.EDGE_FLAGS])
+
+
+def edge_leaves(
+    boundary: PackedParts,
+    number: int,
+    ranges: list[tuple[float, float]],
+    own: list[Cone],
+    beside: tuple[int, Array],
+) -> list[Leaf]:
+    """The leaves of one edge: its parts, with the cones of their normals, and the potential of a
+    round face beside it."""
+    flags = _edge_flags(boundary, number)
+    senses = S.INSIDE if flags & L.REFLEX else S.OUTSIDE
+    if flags & (L.MIXED | L.CREASED):
+        senses = S.OUTSIDE | S.INSIDE
+    curve = boundary.edge_parts[number].curve
+    feature = boundary.n_faces + number
+    bounds = curve_derivatives(curve, ranges)
+    arc = isinstance(curve, ConicArc) and round_arc(curve)
+    found = []
+    for (first, last), d, cone in zip(ranges, bounds, own, strict=True):
+        x, xt, xtt = (np.array(c) for c in edge_jet(boundary.ints, boundary.reals, feature,
+                                                    0.5 * (first + last)))  # fmt: skip
+        h = 0.5 * (last - first)
+        axes = frame_along(xt, xtt)
+        second = d[1] * h * h / 2.0
+        half = np.abs(axes @ xt) * h + second
+        half = half * (1.0 + BOUND_INFLATION) + 1e-15 * float(np.abs(x).max())
+        cones = np.full(8, -1.0)
+        cones[:3], cones[4:7] = cone[0], -cone[0]
+        cones[3] = cone[1] if senses & S.OUTSIDE else -1.0
+        cones[7] = cone[1] if senses & S.INSIDE else -1.0
+        every = np.zeros(12)
+        every[0], every[2], every[5], every[9] = d
+        reals = _leaf_reals(np.array([first, last, 0.0, 0.0]), every, cones, beside[1])
+        kind = ROUND_ARC if arc else -1
+        found.append(Leaf(1, feature, -1, False, senses, [], kind, reals, x, axes, half, beside[0]))
+    return found
+
+
+Cone = tuple[Array, float]
+
+
+def edge_cones(
+    charts: dict[int, FaceChart], pieces: list[Piece], ranges: dict[int, list[tuple[float, float]]]
+) -> dict[int, list[Cone]]:
+    """(axis, half angle) of a cone round both faces' outward normals along each part of each edge.
+
+    Each chart is asked once for all parts of all its edges.
+    """
+    asked: dict[int, list[tuple[int, int, Array]]] = {}
+    for piece in pieces:
+        for k, (first, last) in enumerate(ranges.get(piece.edge, ())):
+            if first < piece.last and piece.first < last:
+                rows = piece.clipped(first, last)
+                asked.setdefault(piece.chart, []).append((piece.edge, k, rows))
+    around: dict[tuple[int, int], list[Cone]] = {}
+    for number, parts in asked.items():
+        chart = charts[number]
+        every = _normal_cones(chart, np.concatenate([rows for _, _, rows in parts]))
+        at = 0
+        for edge, k, rows in parts:
+            around.setdefault((edge, k), []).extend(every[at : at + len(rows)])
+            at += len(rows)
+    return {
+        edge: [_cone_round(around.get((edge, k), [])) for k in range(len(parts))]
+        for edge, parts in ranges.items()
+    }
+
+
+def _normal_cones(chart: FaceChart, rows: Array) -> list[Cone]:
+    """Of a chart's outward normals over rectangles; unknown ones where it has no bounds."""
+    try:
+        bounds = chart.surface.bounds(rows)
+    except ValueError:
+        return [(np.array([0.0, 0.0, 1.0]), UNKNOWN)] * len(rows)
+    return [
+        (chart.outward * axis, float(angle))
+        for axis, angle in zip(bounds.axis, bounds.angle, strict=True)
+    ]
+
+
+def _cone_round(cones: list[Cone]) -> Cone:
+    """A cone around some; one of the half angle `UNKNOWN` where that would be too wide."""
+    nothing = np.array([0.0, 0.0, 1.0]), UNKNOWN
+    if not cones or max(angle for _, angle in cones) >= UNKNOWN:
+        return nothing
+    axis = np.sum([axis for axis, _ in cones], axis=0)
+    scale = np.linalg.norm(axis)
+    if scale <= 1e-3:
+        return nothing
+    axis = axis / scale
+    wide = max(float(between(axis, other)) + angle for other, angle in cones) + SMOOTH_JOIN
+    return axis, wide if wide < 0.5 * np.pi else UNKNOWN
+
+
+def vertex_leaf(boundary: PackedParts, number: int) -> Leaf:
+    """A vertex: every direction may lead to a nearest point."""
+    x = np.asarray(boundary.vertex_points[number], dtype=float)
+    cones = np.array([0.0, 0.0, 1.0, UNKNOWN, 0.0, 0.0, 1.0, UNKNOWN])
+    reals = _leaf_reals(np.zeros(4), np.zeros(12), cones, np.zeros(9))
+    feature = boundary.n_faces + boundary.n_edges + number
+    senses = S.OUTSIDE | S.INSIDE
+    half = np.full(3, 1e-15 * float(np.abs(x).max()))
+    return Leaf(0, feature, -1, False, senses, [], -1, reals, x, np.eye(3), half)
+
+
+def all_leaves(boundary: PackedParts) -> tuple[list[Leaf], list[Piece]]:
+    """All leaves of a boundary, and the pieces of its trimming curves."""
+    charts = {c.number: c for c in face_charts(boundary)}
+    pieces = pieces_of(boundary, charts)
+    size = boundary.size
+    found = [
+        leaf for chart in charts.values() for leaf in face_leaves(boundary, chart, pieces, size)
+    ]
+    ranges = {k: _parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
+    cones = edge_cones(charts, pieces, ranges)
+    round_faces = {}
+    for piece in pieces:
+        kind, record = natural_of(charts[piece.chart])
+        if kind > TORUS_THROUGH:
+            round_faces[piece.edge] = kind, record
+    for number, parts in ranges.items():
+        if parts:
+            beside = round_faces.get(number, (-1, np.zeros(9)))
+            found += edge_leaves(boundary, number, parts, cones[number], beside)
+    found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
+    return found, pieces

@@ -1,0 +1,71 @@
+"""The largest ball that is found inside both of two solids that overlap."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+
+from standoff.geometry.validation import Array
+from standoff.solids.answer import Overlap
+from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.tolerances import STILL
+
+# Parts of the size: the first step of the ascent, and the last.
+FIRST_STEP, LAST_STEP = 0.1, 1e-5
+MOST_STEPS = 60
+# Steps from a common point of both boundaries, parts of the size, among which one inside both is
+# sought where the ascent finds none.
+LOOKS = (0.03, 3e-3, 3e-4, 3e-5)
+WAYS = np.array([w for w in product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
+
+
+def common_ball(pair: PlacedPair, starts: Array, least: float) -> Overlap | None:
+    """By ascent of the lesser depth from world points; None if no ball is deeper than `least`.
+
+    A local maximum: the ball is inside both solids, but another one may be larger.
+    """
+    best, where = -np.inf, starts[0]
+    for start in starts:
+        depth, point = _climbed(pair, start, FIRST_STEP)
+        if depth > best:
+            best, where = depth, point
+    if best <= least:
+        best, where = _beside(pair, starts[0], least)
+    return Overlap(where, best) if best > least else None
+
+
+def _beside(pair: PlacedPair, start: Array, least: float) -> tuple[float, Array]:
+    """From a point inside both that is sought beside a common point of the boundaries."""
+    size = min(pair.a.size, pair.b.size)
+    ways = WAYS / np.linalg.norm(WAYS, axis=1)[:, None]
+    for look in LOOKS:
+        spots = start + look * size * ways
+        depths = [min(pair.depths(spot)[:2]) for spot in spots]
+        k = int(np.argmax(depths))
+        if depths[k] > least:
+            return _climbed(pair, spots[k], look)
+    return -np.inf, start
+
+
+def _climbed(pair: PlacedPair, start: Array, first: float) -> tuple[float, Array]:
+    size = min(pair.a.size, pair.b.size)
+    point, (da, db, ga, gb) = start, pair.depths(start)
+    step = first * size
+    for _ in range(MOST_STEPS):
+        if step < LAST_STEP * size:
+            break
+        worse, other = (ga, gb) if da <= db else (gb, ga)
+        ways = [worse, worse + other, worse - (worse @ other) * other]
+        for way in ways:
+            length = float(np.linalg.norm(way))
+            if length < STILL:
+                continue
+            trial = point + step * way / length
+            told = pair.depths(trial)
+            if min(told[:2]) > min(da, db):
+                point, (da, db, ga, gb) = trial, told
+                break
+        else:
+            step *= 0.4
+    return min(da, db), point

@@ -1,0 +1,156 @@
+"""A pair of solids at poses: what is found in A's frame, and as world vectors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+
+from standoff.geometry.validation import Array
+from standoff.kernels.entries.solids import nearest_in_leaves
+from standoff.kernels.solids import spatial_layout as S
+from standoff.motion.pose import Pose
+from standoff.solids.answer import NearestPair
+from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
+from standoff.solids.spatial.points import signed_distances
+from standoff.solids.spatial.sides import outside_direction
+from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.tolerances import DIRECTED
+
+
+@dataclass(frozen=True)
+class Place:
+    """A pair of nearest points in world axes, with their leaves."""
+
+    row: Array
+    point_a: Array
+    point_b: Array
+    normal: Array
+
+    @property
+    def distance(self) -> float:
+        return float(self.row[0])
+
+
+class PlacedPair:
+    """Two solids at world poses."""
+
+    def __init__(self, a: Solid, b: Solid, pose_a: Pose, pose_b: Pose) -> None:
+        self.a, self.b = a, b
+        self.ra, self.pa = np.asarray(pose_a.rotation), np.asarray(pose_a.translation)
+        self.rb, self.pb = np.asarray(pose_b.rotation), np.asarray(pose_b.translation)
+        rotation = self.ra.T @ self.rb
+        self.relative = np.concatenate([rotation.ravel(), self.ra.T @ (self.pb - self.pa)])
+        self.size = a.size + b.size
+
+    def in_a(self, points: Array) -> Array:
+        """World points in A's frame."""
+        return np.asarray((points - self.pa) @ self.ra)
+
+    def in_b(self, points: Array) -> Array:
+        return np.asarray((points - self.pb) @ self.rb)
+
+    def least(self, senses: tuple[int, int], budget: int) -> Found:
+        """The search between both boundaries, each seen from outside or inside."""
+        return least_distance(
+            self.a.packed, self.b.packed, self.relative, senses, self.size, budget
+        )
+
+    def place(self, row: Array, senses: tuple[int, int]) -> Place:
+        """Of a row (distance, leaf_a, leaf_b, parameters)."""
+        leaf_a, leaf_b = int(row[1]), int(row[2])
+        x = leaf_jet_of(self.a.packed, leaf_a, row[3], row[4])[0] @ self.ra.T + self.pa
+        y = leaf_jet_of(self.b.packed, leaf_b, row[5], row[6])[0] @ self.rb.T + self.pb
+        away = y - x
+        length = float(np.linalg.norm(away))
+        told = length > DIRECTED * self.size
+        normal = away / length if told else self._normal_at(row, senses)
+        return Place(row, x, y, normal)
+
+    def _normal_at(self, row: Array, senses: tuple[int, int]) -> Array:
+        """From a face, where the points are too near to each other for a direction."""
+        sides = (
+            (self.a, int(row[1]), row[3:5], self.ra, 1.0 if senses[0] == S.OUTSIDE else -1.0),
+            (self.b, int(row[2]), row[5:7], self.rb, -1.0 if senses[1] == S.OUTSIDE else 1.0),
+        )
+        ordered = sorted(sides, key=lambda side: -side[0].leaves[side[1]].dim)
+        for solid, leaf, (u, v), rotation, sign in ordered:
+            out = outside_direction(solid, leaf, float(u), float(v))
+            if out is not None:
+                found = sign * (rotation @ out)
+                return np.asarray(found / np.linalg.norm(found))
+        return np.array([0.0, 0.0, 1.0])
+
+    def nearest_pair(self, place: Place, lower: float) -> NearestPair:
+        row = place.row
+        leaf_a, leaf_b = int(row[1]), int(row[2])
+        return NearestPair(
+            place.distance,
+            min(lower, place.distance),
+            place.point_a,
+            place.point_b,
+            place.normal,
+            self.a.feature_of(leaf_a),
+            self.b.feature_of(leaf_b),
+            parameters(self.a, leaf_a, row[3:5]),
+            parameters(self.b, leaf_b, row[5:7]),
+        )
+
+    def gradient(self, place: Place) -> Array:
+        """(12,) by unit twists (v_A, omega_A, v_B, omega_B), world axes."""
+        n = place.normal
+        return np.concatenate(
+            [-n, -np.cross(place.point_a - self.pa, n), n, np.cross(place.point_b - self.pb, n)]
+        )
+
+    def found_from(self, row: Array, start: Array) -> Array | None:
+        """A row of the local minimum that Newton's method finds in a row's leaves from other
+        parameters (4,); None where it is off a solid."""
+        values = np.array([*start, 0.0, 0.0])
+        leaves = row[1:3].astype(np.int64)
+        counts = np.zeros(8, dtype=np.int64)
+        solids = (self.a.packed, self.b.packed)
+        nearest_in_leaves(solids, self.relative, leaves, values, counts)
+        if values[5] == 0.0:
+            return None
+        return np.array([values[4], row[1], row[2], *values[:4], 0.0])
+
+    def depths(self, point: Array) -> tuple[float, float, Array, Array]:
+        """(how deep a world point is in A and in B, at least; how each grows there)."""
+        found = [
+            signed_distances(solid, inside(point)[None])
+            for solid, inside in ((self.a, self.in_a), (self.b, self.in_b))
+        ]
+        ga, gb = -self.ra @ found[0].gradient[0], -self.rb @ found[1].gradient[0]
+        return -float(found[0].upper_bound[0]), -float(found[1].upper_bound[0]), ga, gb
+
+
+def parameters(solid: Solid, leaf: int, values: Array) -> tuple[float, ...]:
+    """(u, v) of a face, (t,) of an edge, () of a vertex."""
+    return tuple(float(x) for x in values[: solid.leaves[leaf].dim])
+
+
+def reference_points(solid: Solid, count: int) -> Array:
+    """Points of a solid's boundary, own frame: vertices first, then middles of leaves."""
+    vertices = np.asarray(solid.boundary.vertex_points).reshape(-1, 3)[:count]
+    whole = (k for k, leaf in enumerate(solid.leaves) if leaf.dim and not leaf.cut)
+    others = [
+        leaf_jet_of(solid.packed, k, *middle_of(solid, k))[0]
+        for k in islice(whole, count - len(vertices))
+    ]
+    return np.vstack([vertices, np.reshape(others, (-1, 3))])
+
+
+def middle_of(solid: Solid, leaf: int) -> tuple[float, float]:
+    u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
+    return 0.5 * (u0 + u1), 0.5 * (v0 + v1)
+
+
+def within_box(solid: Solid, point: Array) -> bool:
+    """Is a point, own frame, in the box at the root of a solid's tree?"""
+    o = int(solid.own[S.R_NODES])
+    node = solid.numbers[o : o + S.NODE_REALS]
+    axes = node[S.AXES : S.AXES + 9].reshape(3, 3)
+    away = np.abs(axes @ (point - node[S.CENTRE : S.CENTRE + 3]))
+    return bool((away <= node[S.HALF : S.HALF + 3]).all())

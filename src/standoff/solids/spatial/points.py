@@ -1,0 +1,122 @@
+"""Points and solids: proven signed distances, many at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.torus_potential import CENTRE_OF
+from standoff.solids.spatial.minimum import EITHER, IDENTITY, Found, leaf_jet_of, least_distance
+from standoff.solids.spatial.sides import outside_direction
+from standoff.solids.spatial.solid import Solid
+
+
+class PointDistances(NamedTuple):
+    """Signed distances of n points from a solid's boundary.
+
+    Attributes
+    ----------
+    distance : (n,) array
+        Length, negative inside.
+    lower_bound, upper_bound : (n,) arrays
+        Proven, of the signed distance.
+    gradient : (n, 3) array
+        Unit vectors, own frame: how the distance grows; zero on the boundary itself where it has
+        none. At a point with several nearest ones it is that of one of them.
+    nearest : (n, 3) array
+        On the boundary, own frame.
+    converged : (n,) array of bool
+        Are the bounds within the tolerance?
+    smooth : (n,) array of bool
+        Was only one nearest point found?
+    """
+
+    distance: Array
+    lower_bound: Array
+    upper_bound: Array
+    gradient: Array
+    nearest: Array
+    converged: NDArray[np.bool_]
+    smooth: NDArray[np.bool_]
+
+
+def packed_point() -> tuple[NDArray[np.int64], Array, NDArray[np.int64], Array]:
+    """The origin as a solid that consists of one vertex, for the compiled search."""
+    ints = np.zeros(L.INT_HEADER + L.VERTEX_STRIDE, dtype=np.int64)
+    ints[L.DIMENSION], ints[L.N_VERTICES], ints[L.VERTICES] = 3, 1, L.INT_HEADER
+    ints[L.INT_HEADER + L.VERTEX_REALS] = L.REAL_HEADER
+    reals = np.zeros(L.REAL_HEADER + 3)
+    own = np.zeros(S.INT_HEADER + S.LEAF_INTS + S.NODE_INTS, dtype=np.int64)
+    own[S.N_LEAVES] = own[S.N_NODES] = 1
+    own[S.LEAVES], own[S.NODES] = S.INT_HEADER, S.INT_HEADER + S.LEAF_INTS
+    own[S.R_LEAVES], own[S.R_NODES] = S.REAL_HEADER, S.REAL_HEADER + S.LEAF_STRIDE
+    own[S.LEAVES] = S.INT_HEADER
+    own[S.INT_HEADER + S.CHART], own[S.INT_HEADER + S.NATURAL] = -1, CENTRE_OF
+    own[own[S.NODES] :] = [-1, -1, 0]
+    numbers = np.zeros(S.REAL_HEADER + S.LEAF_STRIDE + S.NODE_REALS)
+    numbers[S.REAL_HEADER + S.NATURAL_REALS] = 1.0
+    numbers[S.REAL_HEADER + S.NATURAL_REALS + 6 :][:3] = [0.0, 0.0, 1.0]
+    node = numbers[S.REAL_HEADER + S.LEAF_STRIDE :]
+    node[S.AXES : S.AXES + 9] = np.eye(3).ravel()
+    node[S.N_OUT : S.N_OUT + 4] = node[S.N_IN : S.N_IN + 4] = [0.0, 0.0, 1.0, np.pi]
+    for array in (ints, reals, own, numbers):
+        array.flags.writeable = False
+    return ints, reals, own, numbers
+
+
+POINT = packed_point()
+
+
+def distance_to_boundary(solid: Solid, point: Array) -> Found:
+    """From one point, own frame, without a sign."""
+    # the solid is seen from the point, which is the origin
+    pose = np.concatenate([IDENTITY[:9], -point])
+    return least_distance(POINT, solid.packed, pose, (EITHER, EITHER), solid.size)
+
+
+def signed_distances(solid: Solid, points: Array) -> PointDistances:
+    """As `Solid.signed_distance`."""
+    n = len(points)
+    distance, low, high = np.zeros((3, n))
+    gradient, nearest = np.zeros((2, n, 3))
+    converged, smooth = np.zeros((2, n), dtype=bool)
+    for k, point in enumerate(points):
+        found = distance_to_boundary(solid, point)
+        leaf, u, v = int(found.best[2]), found.best[5], found.best[6]
+        at = leaf_jet_of(solid.packed, leaf, u, v)[0]
+        away = point - at
+        length = float(np.linalg.norm(away))
+        direction = outside_direction(solid, leaf, float(u), float(v))
+        on_it = found.met or length <= found.tolerance
+        if on_it:
+            sign = 1.0
+        elif direction is None:
+            sign = -1.0 if solid.boundary.contains(point[None])[0] else 1.0
+        else:
+            sign = -1.0 if direction @ away < 0.0 else 1.0
+        least = 0.0 if on_it else found.lower
+        distance[k] = sign * found.upper
+        bounds = sign * np.array([least, found.upper])
+        low[k], high[k] = bounds.min(), bounds.max()
+        if on_it:
+            low[k], high[k] = -found.tolerance, max(found.upper, found.tolerance)
+            gradient[k] = 0.0 if direction is None else direction
+        else:
+            gradient[k] = sign * away / length
+        nearest[k] = at
+        converged[k] = high[k] - low[k] <= 3.0 * found.tolerance
+        smooth[k] = _alone(solid, found) and not on_it
+    return PointDistances(distance, low, high, gradient, nearest, converged, smooth)
+
+
+def _alone(solid: Solid, found: Found) -> bool:
+    """Are all nearest points that were found one point?"""
+    spots = np.array(
+        [leaf_jet_of(solid.packed, int(r[2]), r[5], r[6])[0] for r in found.minima[:16]]
+    )
+    return len(spots) < 2 or float(np.ptp(spots, axis=0).max()) <= 1e-5 * solid.size

@@ -1,0 +1,101 @@
+"""Which side of a boundary is outside, at a point of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.bodies.tessellation import chart_row
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import (
+    chart_normal,
+    coedge_conormal,
+    coedge_parameters,
+    edge_jet,
+)
+from standoff.solids.spatial.minimum import leaf_jet_of
+from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.tolerances import OPPOSED
+
+
+def outside_direction(solid: Solid, leaf: int, u: float, v: float) -> Array | None:
+    """A vector d at a point y of the boundary, own frame: a point p whose nearest point of the
+    boundary is y is outside where d . (p - y) > 0. None where it is not known.
+
+    At an edge p - y is a sum of the faces' normals with weights of one sign, so their plain sum
+    tells which. At a vertex the normals' sum weighted by the faces' angles there does (Baerentzen
+    and Aanaes, 2005).
+    """
+    part = solid.leaves[leaf]
+    ints, reals = solid.boundary.ints, solid.boundary.reals
+    if part.dim == 2:
+        normal = np.array(chart_normal(ints, reals, part.chart, u, v))
+        return normal if normal.any() else None
+    if part.dim == 0:
+        number = part.feature - solid.boundary.n_faces - solid.boundary.n_edges
+        if number not in solid.vertex_normals:
+            solid.vertex_normals[number] = _at_vertex(solid, number)
+        return solid.vertex_normals[number]
+    row = int(ints[L.EDGES]) + L.EDGE_STRIDE * (part.feature - solid.boundary.n_faces)
+    _, tangent, *_ = leaf_jet_of(solid.packed, leaf, u, v)
+    size = float(np.linalg.norm(tangent))
+    if size == 0.0:
+        return None
+    along = (float(tangent[0] / size), float(tangent[1] / size), float(tangent[2] / size))
+    total = np.zeros(3)
+    for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1):
+        total += np.array(coedge_conormal(ints, reals, int(ints[row + k]), along, u)[1])
+    return total if float(np.linalg.norm(total)) > OPPOSED else None
+
+
+def _at_vertex(solid: Solid, vertex: int) -> Array | None:
+    """The sum of the faces' normals at a vertex, each weighted by the face's angle there."""
+    boundary = solid.boundary
+    total = np.zeros(3)
+    for chart in range(int(boundary.ints[L.N_CHARTS])):
+        out, into, normal = _corner(solid, chart, vertex)
+        if not out and not into:
+            continue
+        if len(out) != 1 or len(into) != 1 or normal is None:
+            return None
+        size = float(np.linalg.norm(normal))
+        if size == 0.0:
+            return None
+        n = normal / size
+        a, b = out[0], into[0]
+        angle = np.arctan2(float(n @ np.cross(a, b)), float(a @ b)) % (2.0 * np.pi)
+        total += angle * n
+    return total if float(np.linalg.norm(total)) > OPPOSED else None
+
+
+def _corner(solid: Solid, chart: int, vertex: int) -> tuple[list[Array], list[Array], Array | None]:
+    """Directions from a vertex along the edges of a chart's loop that leave it and that arrive,
+    counterclockwise seen from outside; and the outward normal there."""
+    boundary = solid.boundary
+    ints, reals = boundary.ints, boundary.reals
+    row = chart_row(boundary, chart)
+    outward = reals[int(row[L.CHART_REALS]) + L.OUTWARD]
+    out: list[Array] = []
+    into: list[Array] = []
+    normal = None
+    first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+    for coedge in range(first, first + count):
+        at = int(ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+        edge = int(ints[at + L.COEDGE_EDGE])
+        if edge < 0:
+            if -1 - edge == vertex:
+                return [], [np.zeros(3)], None  # a collapsed side: no plane corner
+            continue
+        side = float(ints[at + L.COEDGE_SIDE]) * outward
+        part = boundary.edge_parts[edge]
+        o = int(ints[at + L.COEDGE_REALS])
+        for end, sign in ((part.first, 1.0), (part.last, -1.0)):
+            t = part.curve.first if sign > 0.0 else part.curve.last
+            if end != vertex or not reals[o] - 1e-12 <= t <= reals[o + 1] + 1e-12:
+                continue
+            tangent = np.array(edge_jet(ints, reals, boundary.n_faces + edge, t)[1])
+            size = float(np.linalg.norm(tangent))
+            (out if sign * side > 0.0 else into).append(sign * tangent / size if size else tangent)
+            u, v, *_ = coedge_parameters(ints, reals, coedge, t)
+            normal = np.array(chart_normal(ints, reals, chart, u, v))
+    return out, into, normal

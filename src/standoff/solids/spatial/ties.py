@@ -1,0 +1,149 @@
+"""Several nearest pairs: single ones that tie, or a continuum of them, with its ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+import numpy as np
+
+from standoff.geometry.validation import Array
+from standoff.solids.answer import Continuum
+from standoff.solids.spatial.minimum import Found
+from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.tolerances import (
+    CONTINUUM_LENGTH,
+    SAME_BASIN,
+    SAME_PAIR,
+    STRAIGHT,
+    VALLEY,
+)
+
+# How many of the nearest pairs are tried.
+TRIED = 4
+MOST_CORNERS = 8
+# A surface's pieces are at least this part as wide as long; an arc's bend is less.
+WIDE = 0.3
+# Turns between neighbours on a closed arc, radians, at most.
+OPEN_TURN = 1.6
+
+
+def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
+    """Without those that were found twice."""
+    kept: list[Place] = []
+    for place in sorted(places, key=lambda each: each.distance):
+        if not any(_same(place, other, pair.size) for other in kept):
+            kept.append(place)
+    return kept
+
+
+def _same(place: Place, other: Place, size: float) -> bool:
+    """Is a pair another one again, or cut off its valley by the side of a leaf?"""
+    away = max(
+        float(np.linalg.norm(place.point_a - other.point_a)),
+        float(np.linalg.norm(place.point_b - other.point_b)),
+    )
+    farther = place.distance - other.distance > VALLEY * size
+    return away <= (SAME_BASIN if farther else SAME_PAIR) * size
+
+
+def continuum_of(
+    pair: PlacedPair, places: Sequence[Place], found: Found, senses: tuple[int, int]
+) -> Continuum | None:
+    """The continuum that the nearest place belongs to; None if it is a single one.
+
+    It is one if Newton's method finds other pairs at the same distance from other starts in the
+    same pieces.
+    """
+    most = found.upper + found.tolerance
+    told: Continuum | None = None
+    ordered = sorted(places, key=lambda place: -_freedom(pair, place))
+    for place in ordered[:TRIED]:
+        others = _others(pair, place, most, senses)
+        if others and (told is None or told.kind != "surface"):
+            told = _described(place, others, places)
+    return told
+
+
+def _freedom(pair: PlacedPair, place: Place) -> int:
+    """How many parameters a pair of leaves has."""
+    return pair.a.leaves[int(place.row[1])].dim + pair.b.leaves[int(place.row[2])].dim
+
+
+def _others(
+    pair: PlacedPair, place: Place, most: float, senses: tuple[int, int]
+) -> list[tuple[Array, Array]]:
+    """Pairs (x, y) in the leaves of a place at the least distance, more than a little away."""
+    found = []
+    for start in _starts(pair, place.row):
+        row = pair.found_from(place.row, start)
+        if row is None or row[0] > most:
+            continue
+        other = pair.place(row, senses)
+        away = max(
+            float(np.linalg.norm(other.point_a - place.point_a)),
+            float(np.linalg.norm(other.point_b - place.point_b)),
+        )
+        if away > CONTINUUM_LENGTH * pair.size:
+            found.append((other.point_a, other.point_b))
+    return found
+
+
+def _starts(pair: PlacedPair, row: Array) -> Iterator[Array]:
+    """Parameters at the corners of one leaf and the middles of its sides, those of the other held,
+    and the other way round."""
+    q = row[3:7]
+    for side, solid in enumerate((pair.a, pair.b)):
+        u0, u1, v0, v1 = solid.leaves[int(row[1 + side])].reals[:4]
+        for u, v in product((u0, 0.5 * (u0 + u1), u1), (v0, 0.5 * (v0 + v1), v1)):
+            start = q.copy()
+            start[2 * side : 2 * side + 2] = u, v
+            yield start
+
+
+def _described(
+    place: Place, others: list[tuple[Array, Array]], places: Sequence[Place]
+) -> Continuum:
+    near = np.array([x for x, _ in others]) - place.point_a
+    if float(np.ptp(near, axis=0).max()) == 0.0 or not near.any():
+        near = np.array([y for _, y in others]) - place.point_b
+    sizes = np.linalg.svd(near, compute_uv=False)
+    every = [(p.point_a, p.point_b) for p in places] + others
+    spots = np.array([x for x, _ in every])
+    if float(np.ptp(spots, axis=0).max()) <= float(np.ptp([y for _, y in every], axis=0).max()):
+        spots = np.array([y for _, y in every])
+    if len(sizes) > 1 and sizes[1] > WIDE * sizes[0]:
+        return Continuum("surface", _corners(every, spots))
+    straight = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)
+    if len(straight) < 2 or straight[1] <= STRAIGHT * straight[0]:
+        return Continuum("line", _ends(every, spots))
+    return Continuum("arc", () if _closed(spots) else _ends(every, spots))
+
+
+def _ends(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
+    first = int(np.linalg.norm(spots - spots.mean(axis=0), axis=1).argmax())
+    last = int(np.linalg.norm(spots - spots[first], axis=1).argmax())
+    return tuple(every[k] for k in (first, last))
+
+
+def _corners(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
+    """Those that are farthest from each other, one after the other."""
+    chosen = [int(np.linalg.norm(spots - spots.mean(axis=0), axis=1).argmax())]
+    away = np.linalg.norm(spots - spots[chosen[0]], axis=1)
+    while len(chosen) < min(MOST_CORNERS, len(spots)):
+        k = int(away.argmax())
+        if away[k] <= CONTINUUM_LENGTH * float(np.ptp(spots)):
+            break
+        chosen.append(k)
+        away = np.minimum(away, np.linalg.norm(spots - spots[k], axis=1))
+    return tuple(every[k] for k in chosen)
+
+
+def _closed(spots: Array) -> bool:
+    """Do the points go all around their middle?"""
+    middle = spots.mean(axis=0)
+    _, _, axes = np.linalg.svd(spots - middle)
+    flat = (spots - middle) @ axes[:2].T
+    angles = np.sort(np.arctan2(flat[:, 1], flat[:, 0]))
+    gaps = np.diff(np.concatenate([angles, angles[:1] + 2.0 * np.pi]))
+    return bool(gaps.max() < OPEN_TURN)

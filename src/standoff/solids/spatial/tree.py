@@ -1,0 +1,122 @@
+"""The tree over a solid's leaves, and all of it in two flat arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.packed_parts import PackedParts
+from standoff.geometry.patch_bounds import between
+from standoff.geometry.validation import Array
+from standoff.kernels.solids import spatial_layout as S
+from standoff.solids.spatial.leaves import Leaf, all_leaves, box_of
+from standoff.solids.spatial.trims import Piece
+
+CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
+
+
+class _Node:
+    def __init__(self, leaves: list[int]) -> None:
+        self.leaves = leaves
+        self.left = self.right = -1
+        self.reals = np.zeros(S.NODE_REALS)
+
+
+def packed_leaves(boundary: PackedParts) -> tuple[NDArray[np.int64], Array, list[Leaf]]:
+    """(ints, reals, leaves) of a boundary, laid out as in ``kernels.solids.spatial_layout``."""
+    leaves, pieces = all_leaves(boundary)
+    nodes = _grown(leaves)
+    ints, reals = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER)
+    lists: list[int] = []
+    leaf_rows: list[int] = []
+    leaf_reals: list[Array] = []
+    for leaf in leaves:
+        place = len(lists) if leaf.dim == 2 else leaf.beside
+        leaf_rows += [leaf.dim, leaf.feature, leaf.chart, int(leaf.cut), leaf.senses, place]
+        leaf_rows += [len(leaf.pieces), leaf.kind]
+        lists += leaf.pieces
+        leaf_reals.append(leaf.reals)
+    node_rows = [n for node in nodes for n in (node.left, node.right,
+                 node.leaves[0] if len(node.leaves) == 1 else -1)]  # fmt: skip
+    piece_rows = [n for p in pieces for n in (p.coedge, _feature(boundary, p))]
+    ints[S.N_LEAVES], ints[S.N_NODES] = len(leaves), len(nodes)
+    ints[S.LEAVES] = S.INT_HEADER
+    ints[S.NODES] = ints[S.LEAVES] + len(leaf_rows)
+    ints[S.PIECES] = ints[S.NODES] + len(node_rows)
+    ints[S.LISTS] = ints[S.PIECES] + len(piece_rows)
+    blocks = [
+        np.concatenate(leaf_reals),
+        np.concatenate([node.reals for node in nodes]),
+        np.array([_piece_reals(p) for p in pieces]).ravel(),
+    ]
+    ints[S.R_LEAVES] = S.REAL_HEADER
+    ints[S.R_NODES] = ints[S.R_LEAVES] + len(blocks[0])
+    ints[S.R_PIECES] = ints[S.R_NODES] + len(blocks[1])
+    packed = np.array([*ints, *leaf_rows, *node_rows, *piece_rows, *lists], dtype=np.int64)
+    numbers = np.concatenate([reals, *blocks])
+    packed.flags.writeable = numbers.flags.writeable = False
+    return packed, numbers, leaves
+
+
+def _feature(boundary: PackedParts, piece: Piece) -> int:
+    if piece.edge >= 0:
+        return boundary.n_faces + piece.edge
+    return boundary.n_faces + boundary.n_edges - 1 - piece.edge
+
+
+def _piece_reals(p: Piece) -> list[float]:
+    return [p.first, p.last, p.low[0], p.high[0], p.low[1], p.high[1], *p.bend, p.shift, *p.bounds,
+            0.0]  # fmt: skip
+
+
+def _grown(leaves: list[Leaf]) -> list[_Node]:
+    """A binary tree of boxes, its root first."""
+    centres = np.array([leaf.centre for leaf in leaves])
+    corners = [leaf.centre + (CORNERS * leaf.half) @ leaf.axes for leaf in leaves]
+    nodes = [_Node(list(range(len(leaves))))]
+    at = 0
+    while at < len(nodes):
+        node = nodes[at]
+        at += 1
+        own = node.leaves
+        if len(own) == 1:
+            leaf = leaves[own[0]]
+            node.reals[:] = [*leaf.centre, *leaf.axes.ravel(), *leaf.half,
+                             *leaf.reals[S.CONE_OUT : S.CONE_OUT + 8]]  # fmt: skip
+            continue
+        spots = np.concatenate([corners[k] for k in own])
+        axes = _axes_of(spots)
+        heights = spots @ axes.T
+        centre, axes, half = box_of(axes, heights.min(axis=0), heights.max(axis=0))
+        cones = [_cone_round([leaves[k].reals[o : o + 4] for k in own])
+                 for o in (S.CONE_OUT, S.CONE_IN)]  # fmt: skip
+        node.reals[:] = [*centre, *axes.ravel(), *half, *cones[0], *cones[1]]
+        middle = centres[own] @ axes.T
+        order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
+        half_way = len(own) // 2
+        sorted_own = [own[k] for k in order]
+        node.left, node.right = len(nodes), len(nodes) + 1
+        nodes += [_Node(sorted_own[:half_way]), _Node(sorted_own[half_way:])]
+    return nodes
+
+
+def _axes_of(spots: Array) -> Array:
+    """Along the coordinate axes or the principal ones, whichever box is smaller."""
+    _, turned = np.linalg.eigh(np.cov((spots - spots.mean(axis=0)).T))
+    options = [np.eye(3), turned.T if np.linalg.det(turned) > 0 else -turned.T]
+    sizes = [float(np.linalg.norm(np.ptp(spots @ axes.T, axis=0))) for axes in options]
+    return options[int(np.argmin(sizes))]
+
+
+def _cone_round(cones: list[Array]) -> list[float]:
+    """A cone round several; a half angle of -1: none has any normal."""
+    known = [c for c in cones if c[3] >= 0.0]
+    if not known:
+        return [0.0, 0.0, 1.0, -1.0]
+    axis = np.sum([c[:3] for c in known], axis=0)
+    size = float(np.linalg.norm(axis))
+    if size <= 1e-3 or max(c[3] for c in known) >= np.pi:
+        return [0.0, 0.0, 1.0, np.pi]
+    axis = axis / size
+    reach = max(float(between(axis, c[:3])) + float(c[3]) for c in known) + 1e-12
+    return [*axis, reach if reach < np.pi else np.pi]

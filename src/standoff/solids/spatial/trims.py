@@ -1,0 +1,153 @@
+"""Pieces of trimming curves: where each is in (u, v), and bounds of its derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from standoff.bodies.face_leaves import FaceChart
+from standoff.bodies.packed_parts import PackedParts
+from standoff.bodies.tessellation import chart_row
+from standoff.geometry.bernstein import segment
+from standoff.geometry.curves import ConicArc, Curve, Line
+from standoff.geometry.pcurve_boxes import bezier_box, pcurve_box
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import coedge_parameters
+from standoff.solids.spatial.derivative_bounds import curve_derivatives
+
+# Parts of a trimming curve by its kind.
+PARTS = {L.LINE: 1, L.CONIC: 8, L.BEZIER: 16}
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of a packed coedge.
+
+    Attributes
+    ----------
+    coedge, chart, edge : packed numbers; the edge of a collapsed side is -1 - vertex.
+    first, last : parameters.
+    low, high : (2,) of a box around it in (u, v).
+    bend : (2,) greatest second derivatives of u and v; inf where none is known.
+    shift : what was added to u, a whole number of turns.
+    bounds : (4,) as ``curve_derivatives`` gives them.
+    straight : the ends (2, 2) of a straight one.
+    """
+
+    coedge: int
+    chart: int
+    edge: int
+    first: float
+    last: float
+    low: Array
+    high: Array
+    bend: Array
+    shift: float
+    bounds: Array
+    straight: Array | None
+
+    def clipped(self, first: float, last: float) -> Array:
+        """(4,) a rectangle (u0, u1, v0, v1) around the part between two parameters."""
+        low, high = self.low, self.high
+        if self.straight is not None and self.last > self.first:
+            s = (np.clip([first, last], self.first, self.last) - self.first) / (
+                self.last - self.first
+            )
+            ends = self.straight[0] + s[:, None] * (self.straight[1] - self.straight[0])
+            low, high = ends.min(axis=0), ends.max(axis=0)
+        return np.array([low[0], high[0], low[1], high[1]])
+
+
+def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece]:
+    """The pieces of all trimming curves; on periodic charts with their images a turn away that the
+    chart's rectangle reaches."""
+    found = []
+    for number, chart in charts.items():
+        row = chart_row(boundary, number)
+        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+        for coedge in range(first, first + count):
+            for piece in _pieces(boundary, number, coedge):
+                found += _shifted(piece, chart) if chart.surface.periodic else [piece]
+    return found
+
+
+def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
+    u0, u1 = chart.rectangle[:2]
+    found = []
+    for turns in (-1, 0, 1):
+        move = np.array([2.0 * np.pi * turns, 0.0])
+        low, high = piece.low + move, piece.high + move
+        if turns and (high[0] < u0 - 1e-9 or low[0] > u1 + 1e-9):
+            continue
+        straight = None if piece.straight is None else piece.straight + move
+        found.append(
+            Piece(piece.coedge, piece.chart, piece.edge, piece.first, piece.last, low, high,
+                  piece.bend, float(move[0]), piece.bounds, straight)
+        )  # fmt: skip
+    return found
+
+
+def _pieces(boundary: PackedParts, chart: int, coedge: int) -> list[Piece]:
+    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
+    edge = int(boundary.ints[row + L.COEDGE_EDGE])
+    first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
+    at += L.PCURVE_DATA
+    curve = boundary.edge_parts[edge].curve if edge >= 0 else None
+    ends = np.linspace(first, last, PARTS[kind] + 1)
+    if curve is not None and not isinstance(curve, Line | ConicArc):
+        spans = [t for t in curve.spans().tolist() if first < t < last]
+        ends = np.unique(np.concatenate([ends, spans]))
+    ranges = [(float(a), float(b)) for a, b in pairwise(ends)]
+    bounds = np.zeros((len(ranges), 4)) if curve is None else curve_derivatives(curve, ranges)
+    found = []
+    for (a, b), d in zip(ranges, bounds, strict=True):
+        low, high, bend = _placed(boundary, kind, at, (first, last), (a, b))
+        straight = None
+        if kind == L.LINE and (bend == 0.0).all():
+            straight = np.array(
+                [coedge_parameters(boundary.ints, boundary.reals, coedge, t)[:2] for t in (a, b)]
+            )
+            # along an isoline the level is one number, free of the box's margin
+            low, high = straight.min(axis=0), straight.max(axis=0)
+        found.append(Piece(coedge, chart, edge, a, b, low, high, bend, 0.0, d, straight))
+    return found
+
+
+def _placed(
+    boundary: PackedParts, kind: int, at: int, whole: tuple[float, float], part: tuple[float, float]
+) -> tuple[Array, Array, Array]:
+    """(low, high) in (u, v) of a part, and its greatest second derivatives."""
+    unknown = np.full(2, np.inf)
+    if kind == L.BEZIER:
+        count = 3 * (int(boundary.reals[at]) + 1)
+        points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
+        a, b = ((t - whole[0]) / (whole[1] - whole[0]) for t in part)
+        low, high = bezier_box(segment(len(points) - 1, a, b) @ points)
+        return low, high, unknown
+    matrix = boundary.reals[at : at + 9].reshape(3, 3)
+    low, high = pcurve_box(kind, matrix, *part)
+    plain = bool((matrix[2, :2] == 0.0).all())
+    if kind == L.LINE:
+        return low, high, np.zeros(2) if plain else unknown
+    bend = np.hypot(matrix[:2, 0], matrix[:2, 1]) / abs(float(matrix[2, 2]))
+    return low, high, bend * (1.0 + 1e-12) if plain else unknown
+
+
+def edge_ranges(curve: Curve, arc: float, longest: float) -> list[tuple[float, float]]:
+    """An edge's parameter in ranges for leaves."""
+    found = []
+    for a, b in pairwise(curve.spans().tolist()):
+        if isinstance(curve, ConicArc):
+            parts = int(np.ceil((b - a) / arc))
+        elif isinstance(curve, Line):
+            reach = float(np.linalg.norm(curve.point(b) - curve.point(a)))
+            parts = int(np.ceil(reach / longest))
+        else:
+            parts = 8
+        steps = np.linspace(a, b, max(parts, 1) + 1)
+        found += list(pairwise(steps.tolist()))
+    return found

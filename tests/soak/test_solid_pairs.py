@@ -1,0 +1,217 @@
+"""Solids against closed forms: the judge's own formulas, and that it sees what is wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from standoff.solids.answer import Overlap
+from standoff.solids.spatial.distance import spatial_distance
+from standoff.tracking.status import Status
+from standoff_studies.soak import solid_judge, solid_pairs, solid_points
+from standoff_studies.soak.solid_judge import NOISE
+from standoff_studies.soak.solid_outlines import Arc, Cubic, Outline, Segment, polygon
+from standoff_studies.soak.solid_poses import draw_poses
+from standoff_studies.soak.solid_truth import Egg, Elbow, Hollowed, Swept, Turned
+
+PAIR = "drum", "plate"
+
+
+def square(half):
+    return polygon((-half, -half), (half, -half), (half, half), (-half, half))
+
+
+def truths():
+    control = np.array([[0.25, 0.0], [0.8, 0.35], [-0.05, 0.65], [0.35, 1.0]])
+    lid = [Segment(control[-1], np.array([0.0, 1.0])), Segment(np.zeros(2), control[0])]
+    hole = Arc(np.zeros(2), 0.25, -np.pi, np.pi)
+    groove = Arc(np.array([0.6, 0.0]), 0.2, -0.5 * np.pi, -1.5 * np.pi)
+    rest = polygon((0.6, 0.2), (0.15, 0.5), (0.15, -0.4), (0.6, -0.2))[:-1]
+    return {
+        "plate": Swept(Outline([*square(0.6), hole]), 0.0, 0.3),
+        "hollow": Hollowed(
+            Swept(Outline(square(0.5)), -0.5, 0.5), Swept(Outline(square(0.3)), -0.3, 0.3)
+        ),
+        "elbow": Elbow(0.5, 0.14, 0.22, 0.3),
+        "vase": Turned(Outline([Cubic(control), *lid], [Segment(np.array([0.0, 1.0]), np.zeros(2))])),
+        "pulley": Turned(Outline([groove, *rest])),
+        "egg": Egg(np.array([0.5, 0.35, 0.25])),
+    }  # fmt: skip
+
+
+TRUTHS = truths()
+FINE = 0.02
+"""Radius of the cells of a test."""
+
+
+def covered(truth):
+    """Points of a boundary, and how far any other of its points is from them at most."""
+    points = []
+    for patch in truth.patches:
+        boxes = np.array([[0.5, 0.5, 0.5, 0.5]])
+        while len(boxes):
+            at, radius = patch.cells(*boxes.T)
+            points.append(at[(radius >= 0.0) & (radius <= FINE)])
+            u, v, du, dv = boxes[radius > FINE].T
+            halves = [(u + s * du / 2, v + t * dv / 2, du / 2, dv / 2)
+                      for s in (-1, 1) for t in (-1, 1)]  # fmt: skip
+            boxes = np.concatenate([np.column_stack(each) for each in halves])
+    return np.concatenate(points)
+
+
+@pytest.mark.parametrize("name", TRUTHS)
+def test_closed_forms_are_distances_from_their_own_boundaries(name, rng):
+    truth = TRUTHS[name]
+    boundary = covered(truth)
+    assert np.abs(truth.signed(boundary)).max() < 1e-13
+    low, high = boundary.min(axis=0) - 0.2, boundary.max(axis=0) + 0.2
+    points = rng.uniform(low, high, (400, 3))
+    sampled, _ = cKDTree(boundary).query(points)
+    excess = sampled - np.abs(truth.signed(points))
+    assert excess.min() > -1e-12  # a sample is never nearer than the closed form says
+    assert excess.max() < FINE  # and the cells cover the boundary
+    assert (truth.signed(points) < 0.0).any()
+
+
+@pytest.mark.parametrize("name", TRUTHS)
+def test_sides_are_those_of_a_path_from_outside(name, rng):
+    """Along a line from far away the sign changes only where the distance passes zero."""
+    truth = TRUTHS[name]
+    for way in rng.normal(size=(5, 3)):
+        line = np.linspace(-3.0, 3.0, 6001)[:, None] * way / np.linalg.norm(way)
+        line = line + 0.3 * rng.normal(size=3)
+        signed = truth.signed(line)
+        assert signed[0] > 0.0
+        assert np.abs(np.diff(signed)).max() < 1e-3 * (1.0 + 1e-9)
+
+
+@pytest.fixture(scope="module")
+def stock():
+    return solid_pairs.Stock()
+
+
+@pytest.fixture(scope="module")
+def drawn(stock):
+    (a, first), (b, second) = (stock.get(name) for name in PAIR)
+    return a, b, (first, second), draw_poses(a, b, 40, np.random.default_rng(3))
+
+
+@pytest.fixture(scope="module")
+def asked():
+    """Answers, each asked for once."""
+    known = {}
+
+    def ask(a, b, pose_a, pose_b):
+        key = a.name, pose_a.tobytes(), pose_b.tobytes()
+        if key not in known:
+            known[key] = spatial_distance(a, b, pose_a, pose_b)
+        return known[key]
+
+    return ask
+
+
+def judged(drawn, ask):
+    lines = []
+    return solid_judge.judged(*drawn, ask, lines.append), lines
+
+
+def test_the_library_s_answers_are_sound(drawn, asked):
+    verdict, lines = judged(drawn, asked)
+    assert verdict.sound, lines
+    assert verdict.poses == 40
+    names = {status for _, status in verdict.statuses}
+    assert {"CONVERGED", "OVERLAPPING", "CONTINUUM"} <= names
+    assert "overlap" in solid_pairs.table(verdict)
+
+
+def raised(told):
+    return replace(told, lower_bound=told.lower_bound + 1e-6, upper_bound=told.upper_bound + 1e-6)
+
+
+def nearer(told):
+    """All numbers of a distance that is less by 1e-6: only the points tell."""
+    less = told.distance - 1e-6
+    return replace(told, distance=less, lower_bound=less, upper_bound=less)
+
+
+def low(told):
+    return replace(told, upper_bound=0.5 * told.distance, lower_bound=0.4 * told.distance)
+
+
+def named(status):
+    return lambda told: replace(told, status=status)
+
+
+def wide(told):
+    return replace(told, lower_bound=0.9 * told.lower_bound)
+
+
+def off(told):
+    return replace(told, point_a=told.point_a + 1e-8)
+
+
+def within(told):
+    return replace(told, inside="A")
+
+
+def larger(told):
+    ball = Overlap(told.overlap.common_point, 1.0001 * told.overlap.radius + 1e-9)
+    return replace(told, overlap=ball, distance=-2.0 * ball.radius, upper_bound=-2.0 * ball.radius)
+
+
+BREAKS = (
+    ("bound", Status.CONVERGED, raised),
+    ("witness", Status.CONVERGED, nearer),
+    ("bound", Status.CONVERGED, low),
+    ("status", Status.CONVERGED, named(Status.TOUCHING)),
+    ("status", Status.CONVERGED, named(Status.CONTAINED)),
+    ("status", Status.CONVERGED, named(Status.OVERLAPPING)),
+    ("status", Status.OVERLAPPING, named(Status.CONVERGED)),
+    ("status", Status.OVERLAPPING, named(Status.TOUCHING)),
+    ("continuum", Status.CONVERGED, named(Status.CONTINUUM)),
+    ("width", Status.CONVERGED, wide),
+    ("witness", Status.CONVERGED, off),
+    ("inside", Status.CONVERGED, within),
+    ("ball", Status.OVERLAPPING, larger),
+)
+
+
+@pytest.mark.parametrize(("kind", "status", "broken"), BREAKS)
+def test_a_mistake_is_found(drawn, asked, kind, status, broken):
+    a, b, solids, poses = drawn
+
+    def ask(first, second, pose_a, pose_b):
+        told = asked(first, second, pose_a, pose_b)
+        return broken(told) if told.status is status else told
+
+    few = tuple(each[:12] for each in poses)
+    verdict, lines = judged((a, b, solids, few), ask)
+    assert verdict.faults[kind] > 0, verdict
+    assert "pose_b" in lines[0]
+
+
+def test_points_are_judged(stock, rng):
+    known, solid = stock.get("drum")
+    points = solid_points.drawn(known, 300, rng)
+    told = solid.signed_distance(points)
+    assert solid_points.compared(known, points, told).sound
+    spare = 10.0 * NOISE * known.size
+    for name, wrong in (
+        ("bound", told._replace(lower_bound=told.upper_bound + spare)),
+        ("side", told._replace(distance=-told.distance)),
+        ("nearest", told._replace(nearest=told.nearest + spare)),
+        ("gradient", told._replace(gradient=-told.gradient)),
+    ):
+        assert getattr(solid_points.compared(known, points, wrong), name) > 0
+
+
+def test_the_command_ends_with_1_after_a_fault(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["", "--poses", "4", "--parts", "drum", "--points", "0"])
+    monkeypatch.setattr(solid_pairs, "TELL", -1.0)
+    assert solid_pairs.main() == 0
+    monkeypatch.setattr(
+        solid_pairs, "spatial_distance", lambda *given: off(spatial_distance(*given))
+    )
+    assert solid_pairs.main() == 1
+    assert "witness" in capsys.readouterr().out

@@ -1,0 +1,118 @@
+"""Solids in space that the tests measure: turned parts, prisms and closed surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from standoff.bodies import Edge, Face
+from standoff.geometry import (
+    ConicArc,
+    Cylinder,
+    Line,
+    Plane,
+    Torus,
+    ellipsoid_patches,
+)
+from standoff.geometry.quadrics import sphere_atlas
+from standoff.solids.spatial import Solid
+
+x, y, z = np.eye(3)
+
+
+def circle(radius: float, height: float) -> Edge:
+    return Edge(ConicArc(height * z, radius * x, radius * y))
+
+
+def level(height: float, *loop: tuple[int, int]) -> Face:
+    return Face((Plane.through(height * z, x, y),), loop)
+
+
+def wall(radius: float, *loop: tuple[int, int]) -> Face:
+    return Face((Cylinder(np.diag([radius, radius, 1.0]), np.zeros(3)),), loop)
+
+
+def peg(radius: float, low: float, high: float) -> Solid:
+    edges = [circle(radius, low), circle(radius, high)]
+    faces = [level(low, (0, 1)), wall(radius, (0, 1), (1, 1)), level(high, (1, 1))]
+    return Solid.from_brep(edges=edges, faces=faces, name="peg")
+
+
+def tube(inner: float, outer: float, low: float, high: float) -> Solid:
+    edges = [circle(inner, low), circle(inner, high), circle(outer, low), circle(outer, high)]
+    faces = [
+        level(low, (0, 1), (2, 1)),
+        wall(inner, (0, 1), (1, 1)),
+        wall(outer, (2, 1), (3, 1)),
+        level(high, (1, 1), (3, 1)),
+    ]
+    return Solid.from_brep(edges=edges, faces=faces, name="tube")
+
+
+def bolt() -> Solid:
+    edges = [circle(1, 0), circle(1, 3), circle(2, 3), circle(2, 4)]
+    faces = [
+        level(0, (0, 1)),
+        wall(1, (0, 1), (1, 1)),
+        level(3, (1, 1), (2, 1)),
+        wall(2, (2, 1), (3, 1)),
+        level(4, (3, 1)),
+    ]
+    return Solid.from_brep(edges=edges, faces=faces, name="bolt")
+
+
+def prism(outline: list[tuple[float, float]], height: float) -> Solid:
+    """Of a polygon in the plane z = 0, up to a height."""
+    n = len(outline)
+    points = np.array([(*p, h) for h in (0.0, height) for p in outline])
+    edges: list[Edge] = []
+
+    def edge(a: int, b: int) -> int:
+        edges.append(Edge(Line(points[a], points[b]), a, b))
+        return len(edges) - 1
+
+    low = [edge(i, (i + 1) % n) for i in range(n)]
+    high = [edge(n + i, n + (i + 1) % n) for i in range(n)]
+    up = [edge(i, n + i) for i in range(n)]
+    faces = [
+        Face((Plane.through(points[0], x, y),), tuple((k, 1) for k in low)),
+        Face((Plane.through(points[n], x, y),), tuple((k, 1) for k in high)),
+    ]
+    for i in range(n):
+        j = (i + 1) % n
+        plane = Plane.through(points[i], points[j] - points[i], z)
+        faces.append(Face((plane,), ((low[i], 1), (up[j], 1), (high[i], -1), (up[i], -1))))
+    return Solid.from_brep(points, edges, faces, name="prism")
+
+
+BRACKET = [(0.0, 0.0), (2.0, 0.0), (2.0, 0.4), (0.4, 0.4), (0.4, 1.5), (0.0, 1.5)]
+
+
+def bracket() -> Solid:
+    return prism(BRACKET, 0.7)
+
+
+def sphere(radius: float) -> Face:
+    return Face(sphere_atlas(radius * np.eye(3), np.zeros(3)))
+
+
+def ball(radius: float) -> Solid:
+    return Solid.from_brep(faces=[sphere(radius)], name="ball")
+
+
+def socket(inner: float, outer: float) -> Solid:
+    """A ball with a round cavity."""
+    return Solid.from_brep(faces=[sphere(outer), sphere(inner)], name="socket")
+
+
+def egg(a: float, b: float, c: float) -> Solid:
+    """An ellipsoid of Bezier patches."""
+    return Solid.from_patches(ellipsoid_patches(a, b, c), name="egg")
+
+
+def ring(major: float, minor: float) -> Solid:
+    half = np.pi / 2
+    patches = [
+        Torus(major, minor, v0=-half, v1=half),
+        Torus(major, minor, v0=half, v1=3.0 * half),
+    ]
+    return Solid.from_patches(patches, name="ring")
