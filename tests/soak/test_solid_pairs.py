@@ -95,7 +95,7 @@ def stock():
 @pytest.fixture(scope="module")
 def drawn(stock):
     (a, first), (b, second) = (stock.get(name) for name in PAIR)
-    return a, b, (first, second), draw_poses(a, b, 40, np.random.default_rng(3))
+    return a, b, (first, second), draw_poses(a, b, 30, np.random.default_rng(3))
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +106,8 @@ def asked():
     def ask(a, b, pose_a, pose_b):
         key = a.name, pose_a.tobytes(), pose_b.tobytes()
         if key not in known:
-            known[key] = spatial_distance(a, b, pose_a, pose_b)
+            # few are enough for a true interval, and for these poses nearly always for a proof
+            known[key] = spatial_distance(a, b, pose_a, pose_b, evaluations=5000)
         return known[key]
 
     return ask
@@ -120,7 +121,7 @@ def judged(drawn, ask):
 def test_the_library_s_answers_are_sound(drawn, asked):
     verdict, lines = judged(drawn, asked)
     assert verdict.sound, lines
-    assert verdict.poses == 40
+    assert verdict.poses == 30
     names = {status for _, status in verdict.statuses}
     assert {"CONVERGED", "OVERLAPPING", "CONTINUUM"} <= names
     assert "overlap" in solid_pairs.table(verdict)
