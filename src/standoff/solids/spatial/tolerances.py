@@ -32,5 +32,5 @@ SAME_BASIN: Final = 1e-2
 a leaf."""
 VALLEY: Final = 1e-14
 """Of the sizes: pairs that differ by less in their distance are as near as each other."""
-STRAIGHT: Final = 1e-6
-"""Of its length: a continuum that bends less is a line."""
+STRAIGHT: Final = 3e-3
+"""Of its length: a continuum that bends less is a line; pairs within the tolerance of the distance lie\nto both sides of it."""
