@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from standoff.bodies import Edge, Face
@@ -31,12 +33,14 @@ def wall(radius: float, *loop: tuple[int, int]) -> Face:
     return Face((Cylinder(np.diag([radius, radius, 1.0]), np.zeros(3)),), loop)
 
 
+@cache
 def peg(radius: float, low: float, high: float) -> Solid:
     edges = [circle(radius, low), circle(radius, high)]
     faces = [level(low, (0, 1)), wall(radius, (0, 1), (1, 1)), level(high, (1, 1))]
     return Solid.from_brep(edges=edges, faces=faces, name="peg")
 
 
+@cache
 def tube(inner: float, outer: float, low: float, high: float) -> Solid:
     edges = [circle(inner, low), circle(inner, high), circle(outer, low), circle(outer, high)]
     faces = [
@@ -48,6 +52,7 @@ def tube(inner: float, outer: float, low: float, high: float) -> Solid:
     return Solid.from_brep(edges=edges, faces=faces, name="tube")
 
 
+@cache
 def bolt() -> Solid:
     edges = [circle(1, 0), circle(1, 3), circle(2, 3), circle(2, 4)]
     faces = [
@@ -87,6 +92,7 @@ def prism(outline: list[tuple[float, float]], height: float) -> Solid:
 BRACKET = [(0.0, 0.0), (2.0, 0.0), (2.0, 0.4), (0.4, 0.4), (0.4, 1.5), (0.0, 1.5)]
 
 
+@cache
 def bracket() -> Solid:
     return prism(BRACKET, 0.7)
 
@@ -95,20 +101,24 @@ def sphere(radius: float) -> Face:
     return Face(sphere_atlas(radius * np.eye(3), np.zeros(3)))
 
 
+@cache
 def ball(radius: float) -> Solid:
     return Solid.from_brep(faces=[sphere(radius)], name="ball")
 
 
+@cache
 def socket(inner: float, outer: float) -> Solid:
     """A ball with a round cavity."""
     return Solid.from_brep(faces=[sphere(outer), sphere(inner)], name="socket")
 
 
+@cache
 def egg(a: float, b: float, c: float) -> Solid:
     """An ellipsoid of Bezier patches."""
     return Solid.from_patches(ellipsoid_patches(a, b, c), name="egg")
 
 
+@cache
 def ring(major: float, minor: float) -> Solid:
     half = np.pi / 2
     patches = [
