@@ -27,7 +27,14 @@ def distinct(pair: Queried, rows: Array) -> Array:
         for other in mine[1:]:
             mine[0].extend(other)
             sets = [each for each in sets if each is not other]
-    return np.array([each[0] for each in sets]).reshape(-1, rows.shape[1])
+    return np.array([_best(each) for each in sets]).reshape(-1, rows.shape[1])
+
+
+def _best(rows: list[Array]) -> Array:
+    """The nearest of some rows that are one, with the best bound that any of their pieces has."""
+    best = rows[0].copy()
+    best[1] = max(float(row[1]) for row in rows)
+    return best
 
 
 def _is_one(pair: Queried, row: Array, other: Array) -> bool:
