@@ -192,6 +192,8 @@ def _answer(
             ]
         )
         entries.gradient(arms, gradient)
+    if overlap is None and status is not Status.TOUCHING:
+        lower = max(lower, 0.0)
     lower -= pair.slack
     return SolidProximity(
         status=status,

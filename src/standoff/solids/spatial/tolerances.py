@@ -34,3 +34,15 @@ VALLEY: Final = 1e-14
 """Of the sizes: pairs that differ by less in their distance are as near as each other."""
 STRAIGHT: Final = 1e-6
 """Of its length: a continuum that bends less is a line."""
+
+ALONG_NORMAL = 0.9
+"""Cosine (-): a point is along a face's normal, so that the face says on which side it is. At a
+nearest place within a face it is 1."""
+
+BESIDE_EDGE = 1e-2
+"""Cosine (-) to an edge's or a vertex's sum of normals from which on they say on which side a point
+is; less is told by a ray."""
+
+PARTED = 4.0
+"""Tolerances (-) by which a solid is moved along the normal to see whether it then is apart: if so,
+no more than that is shared, and they touch."""
