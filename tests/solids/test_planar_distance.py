@@ -238,3 +238,13 @@ def test_a_budget_ends_with_a_proven_interval() -> None:
     assert deep.status in (so.Status.DEADLINE, so.Status.OVERLAPPING)
     if deep.status is so.Status.DEADLINE:
         assert deep.lower_bound <= distance(a, b, HOME, planar_pose(1.6, 0.0)).distance
+
+
+def test_nearly_alike_curves_have_no_false_ties() -> None:
+    """An ellipse in a slightly larger one: two places, each flat over far more than a point."""
+    hole = [ConicArc((0.0, 0.0), (2.0, 0.0), (0.0, 1.5))]
+    pin = so.PlanarSolid.from_loops([ConicArc((0.0, 0.0), (1.998, 0.0), (0.0, 1.4985))])
+    answer = distance(plate(hole), pin, HOME, HOME)
+    assert answer.status is so.Status.CONVERGED
+    assert answer.distance == pytest.approx(0.0015, abs=1e-12)
+    assert len(answer.minima) == 2

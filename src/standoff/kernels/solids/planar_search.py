@@ -202,8 +202,11 @@ def close(pieces, bound, sought, queue, counts, progress):
     counts[LEAF_PAIRS] += 1
     counts[EVALUATIONS] += JETS_OF_PAIR
     near = nearest_points(a, p, b, q)
-    upper = min(upper, near.distance)
     n = direction(a, p, b, q, near, sought.extent)
+    leaves = leaf_of(a, p.node), leaf_of(b, q.node)
+    if near.distance < upper:
+        upper = near.distance
+        keep(queue, 0, near, n, bound, leaves)
     goal = min(near.distance, max(upper, sought.above)) - sought.tolerance
     if n[0] != 0.0 or n[1] != 0.0:
         bound = max(bound, bound_pair(pieces, near, n, goal, sought, counts) - sought.roundoff)
@@ -216,7 +219,6 @@ def close(pieces, bound, sought, queue, counts, progress):
         if near.distance <= reach_of(sought, upper) and (
             touching or is_stationary(a, p, b, q, near, n[0], n[1])
         ):
-            leaves = leaf_of(a, p.node), leaf_of(b, q.node)
             n_found = keep(queue, n_found, near, n, bound, leaves)
     return done, bound, Progress(made, size, upper, proven, n_found)
 
@@ -259,11 +261,12 @@ def seek(a, b, sought, queue, counts, budget):
     """(how it ended, least proven, least found, how many pairs were kept).
 
     Every pair of pieces ends with a bound: dropped with a bound above what is sought, closed by a
-    potential, or open in the queue. The least of these bounds is what is proven.
+    potential, or open in the queue. The least of these bounds is what is proven. The first of the
+    pairs that are kept is the nearest.
     """
     p, q = node_piece(a, 0), node_piece(b, 0)
     push(queue, 0, 0, apart(p, q) - sought.roundoff, p, q)
-    progress = Progress(1, 1, inf, inf, 0)
+    progress = Progress(1, 1, inf, inf, 1)
     while progress.size > 0:
         made, size, upper, proven, n_found = progress
         row = N_ROW * pop(queue.rows, queue.heap, size)
@@ -278,7 +281,7 @@ def seek(a, b, sought, queue, counts, budget):
         elif made + 4 > queue.capacity or counts[EVALUATIONS] > budget:
             ended = SPENT
         if ended >= 0:
-            return ended, min(proven, bound), upper, n_found
+            return ended, min(proven, bound), upper, n_found if upper < inf else 0
         progress = Progress(made, size - 1, upper, proven, n_found)
         pieces = Pieces(a, take_piece(queue.rows, row + 1), b, take_piece(queue.rows, row + 9))
         floor = -inf

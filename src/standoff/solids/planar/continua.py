@@ -15,14 +15,45 @@ from standoff.solids.planar.tolerances import LONG_SET, ONE_PAIR
 Array = NDArray[np.float64]
 
 
-def distinct(pair: Queried, near: Array, rows: Array) -> Array:
-    """The rows without those that are a better one's to within ONE_PAIR, nearest first."""
-    kept: list[Array] = []
-    reach = ONE_PAIR * pair.size
+def distinct(pair: Queried, rows: Array) -> Array:
+    """The nearest of each set of rows that are one, nearest first."""
+    sets: list[list[Array]] = []
     for row in rows:
-        if all(np.abs(row[2:6] - other[2:6]).max() > reach for other in kept):
-            kept.append(row)
-    return np.array(kept).reshape(-1, near.shape[1] if near.size else 12)
+        mine = [each for each in sets if any(_is_one(pair, row, other) for other in each)]
+        if not mine:
+            sets.append([row])
+            continue
+        mine[0].append(row)
+        for other in mine[1:]:
+            mine[0].extend(other)
+            sets = [each for each in sets if each is not other]
+    return np.array([_best(each) for each in sets]).reshape(-1, rows.shape[1])
+
+
+def _best(rows: list[Array]) -> Array:
+    """The nearest of some rows that are one, with the best bound that any of their pieces has."""
+    best = rows[0].copy()
+    best[1] = max(float(row[1]) for row in rows)
+    return best
+
+
+def _is_one(pair: Queried, row: Array, other: Array) -> bool:
+    """Are two pairs of points the same, or is the pair half way between them as near?
+
+    Where boundaries nearly follow each other, pairs within the tolerance reach far.
+    """
+    if np.abs(row[2:6] - other[2:6]).max() <= ONE_PAIR * pair.size:
+        return True
+    halfway = []
+    for side, solid in enumerate((pair.a, pair.b)):
+        leaves = int(row[10 + side]), int(other[10 + side])
+        curves = {solid.outline.leaf_int(leaf, P.CURVE) for leaf in leaves}
+        if len(curves) > 1:
+            return False
+        t = 0.5 * float(row[8 + side] + other[8 + side])
+        halfway.append(_moved(pair, side, solid.edges[curves.pop()].point(t)[None, :2])[0])
+    gap = float(np.linalg.norm(halfway[1] - halfway[0]))
+    return bool(gap <= max(row[0], other[0]) + pair.tolerance)
 
 
 def continuum_of(pair: Queried, near: Array, least: float) -> Continuum | None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
+from standoff.geometry.curves import Curve
 from standoff.solids.planar.loops import Loop
 from standoff.solids.planar.outline import Outline
 from standoff.solids.planar.tolerances import BOUND_ROUNDED
@@ -24,6 +25,9 @@ class Shape(Protocol):
 
     @property
     def loops(self) -> Sequence[Loop]: ...
+
+    @property
+    def edges(self) -> Sequence[Curve]: ...
 
     @property
     def slack(self) -> float: ...

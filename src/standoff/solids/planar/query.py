@@ -145,7 +145,7 @@ def _nearest(pair: Queried, row: Array) -> NearestPair:
 def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None) -> SolidProximity:
     """Boundaries that do not meet: apart, one in a hole of the other, or one in its material."""
     near = searched.found[searched.found[:, 0] <= searched.least + pair.tolerance]
-    rows = distinct(pair, near, searched.found if minima else near)
+    rows = distinct(pair, searched.found if minima else near)
     continuum = continuum_of(pair, near, searched.least)
     # what a bound near 0 leaves open is whether the boundaries meet, and so which case it is
     apart = searched.proven > 0.0
@@ -236,7 +236,7 @@ def _meeting(pair: Queried, above: float) -> SolidProximity:
     if overlap is not None and overlap.radius > pair.tolerance:
         return _overlapping(pair, searched, overlap)
     near = searched.found[searched.found[:, 0] <= searched.least + pair.tolerance]
-    rows = distinct(pair, near, searched.found if above else near)
+    rows = distinct(pair, searched.found if above else near)
     continuum = continuum_of(pair, near, searched.least)
     smooth = Smoothness.PARTIAL if continuum else Smoothness.SMOOTH
     if len(rows) > 1 and not continuum:
@@ -282,7 +282,7 @@ def _overlapping(
     ball = overlap or common_ball(pair, searched)
     distance = 0.0 if ball is None else -2.0 * ball.radius
     bounds = -np.inf, distance
-    rows = distinct(pair, searched.found, searched.found)[:1] if len(searched.found) else ()
+    rows = distinct(pair, searched.found[:1])[:1] if len(searched.found) else ()
     pairs = _pairs(pair, np.asarray(rows))
     counts = _counts(searched.counts)
     return _answer(
