@@ -124,12 +124,12 @@ def interpolated(places: Callable[[Array], Array], breaks: Array) -> tuple[Array
     ts = np.concatenate([a + nodes[:-1] * (b - a) for a, b in pairwise(breaks)] + [breaks[-1:]])
     values = places(ts)
     basis = bernstein(FIT_DEGREE, nodes)
-    rows = [values[:1]]
+    rows: list[Array] = [values[:1]]
     for span in range(len(breaks) - 1):
         part = values[span * FIT_DEGREE : (span + 1) * FIT_DEGREE + 1]
         net = np.linalg.solve(basis, part)
         net[-1] = part[-1]
-        rows.append(net[1:])
+        rows.append(np.asarray(net[1:], dtype=np.float64))
     knots = np.concatenate([breaks[:1], np.repeat(breaks, FIT_DEGREE), breaks[-1:]])
     return np.concatenate(rows), knots
 
