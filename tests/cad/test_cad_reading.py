@@ -56,6 +56,12 @@ def test_a_part(name: str, tmp_path: Path, rng: np.random.Generator) -> None:
     for face in part.shape.face_parts:
         assert isinstance(face.charts[0], tuple(KINDS[kind] for kind in kinds))
     assert isinstance(part.shape, so.Body) == (name in ("filleted box", "cone"))
+    if name == "drilled tube":  # splines on cylinders: not exact, but bounded
+        report = part.report
+        assert report.trims is not None
+        assert report.trims.get("fitted", 0) + report.trims.get("file", 0) >= 2
+        assert 0.0 < report.trim_bound <= report.slack <= 4.0 * report.tolerance
+        assert part.shape.check().slack == report.slack
     low, high = _box(part.shape)
     points = rng.uniform(low - 1.0, high + 1.0, (40, 3))
     expected = [
@@ -70,15 +76,6 @@ def _box(shape: Any) -> tuple[np.ndarray, np.ndarray]:
         [e.curve.point(t) for e in shape.edge_parts for t in (e.curve.first, e.curve.last)]
     )
     return points.min(axis=0), points.max(axis=0)
-
-
-def test_splines_on_a_cylinder_have_a_bound(tmp_path: Path) -> None:
-    part = so.read_step(made.write_step(made.drilled_tube(), tmp_path / "tube.step")).parts[0]
-    report = part.report
-    assert report.trims is not None
-    assert report.trims.get("fitted", 0) + report.trims.get("file", 0) >= 2
-    assert 0.0 < report.trim_bound <= report.slack <= 4.0 * report.tolerance
-    assert part.shape.check().slack == report.slack
 
 
 def test_an_assembly_has_names_places_and_colours(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 from standoff.bodies.charts import surface_normal
 from standoff.bodies.loops import traced, turn_loops
 from standoff.bodies.packing import Chart
-from standoff.bodies.tolerances import PIECE_END, SMOOTH_ANGLE
+from standoff.bodies.tolerances import PIECE_ROUNDOFF, SMOOTH_ANGLE
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
@@ -284,7 +284,7 @@ def chart_at(charts: list[Chart], face: int, edge: int, t: float) -> tuple[Chart
             break
         for c in chart.coedges:
             if c.edge == edge:
-                room = PIECE_END * (abs(t) + 1.0)
+                room = PIECE_ROUNDOFF * (abs(t) + 1.0)
                 if c.pcurve.kind == L.BEZIER and not c.first - room <= t <= c.last + room:
                     continue
                 u, v, depth = c.pcurve.point(t)

@@ -30,7 +30,7 @@ WIDE_ANGLE: Final = 1e-6
 SINGULAR_CORNER: Final = 1e-12
 """Tangents at a corner whose sine is below this are one direction: the chart is singular there."""
 
-PIECE_END: Final = 1e-15
+PIECE_ROUNDOFF: Final = 1e-15
 """A parameter belongs to a piece of a trimming curve whose end it passes by this (relative to 1 +
 the parameter): the roundoff of ends that were computed in two ways."""
 

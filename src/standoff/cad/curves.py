@@ -8,19 +8,21 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.special import comb
 
 from standoff.cad.opencascade import coordinates, frame_of
+from standoff.cad.tolerances import FITTED_TRIM
 from standoff.errors import StandoffError
+from standoff.geometry.bernstein import basis as bernstein
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.knots import GREATEST_DEGREE
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.tolerances import WHOLE_CONIC
 from standoff.geometry.validation import Array
 
-# Degree of a fitted curve, and parts of each span of one whose degree is too high.
+# Degree of a fitted curve, its spans at most, and values compared within each.
 FIT_DEGREE = 7
-PARTS = 4
+MOST_SPANS = 32
+BETWEEN = 12
 
 
 class NoExactForm(StandoffError):
@@ -90,14 +92,28 @@ def converted(geometry: Any, first: float, last: float) -> Converted:
 def fitted_curve(curve: Any, first: float, last: float) -> NurbsCurve:
     """A spline of lower degree near one of a degree that is too high. How far it is from its two
     faces is bounded with its trimming curves."""
-    ends = [first, last]
-    if curve.DynamicType().Name() == "Geom_BSplineCurve":
-        knots = [curve.Knot(k) for k in range(1, curve.NbKnots() + 1)]
-        ends = [first, *(k for k in knots if first < k < last), last]
-    breaks = np.unique(np.concatenate([np.linspace(a, b, PARTS + 1) for a, b in pairwise(ends)]))
     return NurbsCurve(
-        *interpolated(lambda ts: np.array([coordinates(curve.Value(t)) for t in ts]), breaks)
+        *approximated(lambda ts: np.array([coordinates(curve.Value(t)) for t in ts]), first, last)
     )
+
+
+def approximated(
+    places: Callable[[Array], Array], first: float, last: float
+) -> tuple[Array, Array]:
+    """(points, knots) of a spline near a function: spans are halved, all at once, until values
+    between those that it takes agree, or often enough."""
+    middles = (np.arange(BETWEEN) + 0.5) / BETWEEN
+    basis = bernstein(FIT_DEGREE, middles)
+    spans = 1
+    while True:
+        breaks = np.linspace(first, last, spans + 1)
+        points, knots = interpolated(places, breaks)
+        nets = [points[k * FIT_DEGREE : (k + 1) * FIT_DEGREE + 1] for k in range(spans)]
+        at = np.concatenate([a + middles * (b - a) for a, b in pairwise(breaks)])
+        off = np.abs(np.concatenate([basis @ net for net in nets]) - places(at)).max()
+        if off <= FITTED_TRIM * np.ptp(points, axis=0).max() or spans >= MOST_SPANS:
+            return points, knots
+        spans *= 2
 
 
 def interpolated(places: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:
@@ -107,14 +123,13 @@ def interpolated(places: Callable[[Array], Array], breaks: Array) -> tuple[Array
     nodes[0], nodes[-1] = 0.0, 1.0
     ts = np.concatenate([a + nodes[:-1] * (b - a) for a, b in pairwise(breaks)] + [breaks[-1:]])
     values = places(ts)
-    k = np.arange(FIT_DEGREE + 1)
-    basis = comb(FIT_DEGREE, k) * nodes[:, None] ** k * (1.0 - nodes[:, None]) ** (FIT_DEGREE - k)
-    rows = [values[:1]]
+    basis = bernstein(FIT_DEGREE, nodes)
+    rows: list[Array] = [values[:1]]
     for span in range(len(breaks) - 1):
         part = values[span * FIT_DEGREE : (span + 1) * FIT_DEGREE + 1]
         net = np.linalg.solve(basis, part)
         net[-1] = part[-1]
-        rows.append(net[1:])
+        rows.append(np.asarray(net[1:], dtype=np.float64))
     knots = np.concatenate([breaks[:1], np.repeat(breaks, FIT_DEGREE), breaks[-1:]])
     return np.concatenate(rows), knots
 

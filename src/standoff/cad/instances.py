@@ -13,7 +13,7 @@ from standoff.cad.opencascade import KINDS, cast, compound, explored, is_kind, m
 from standoff.errors import CadError
 from standoff.geometry.validation import Array
 
-METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "inch": 0.0254}
+METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254}
 """Units of length, in metres."""
 NAMES = {"millimetre": "mm", "centimetre": "cm", "metre": "m", "INCH": "inch", "inch": "inch"}
 Colour = tuple[float, float, float, float]

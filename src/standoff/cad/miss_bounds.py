@@ -27,6 +27,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
 # Spans of an edge at first, and how often they are halved at most.
+EPS = float(np.finfo(np.float64).eps)
 FIRST_SPANS = 32
 MOST_HALVINGS = 9
 
@@ -107,7 +108,7 @@ def _second(
     with np.errstate(all="ignore"):
         total = xuu * u[1] ** 2 + xuv * (u[1] * v[1] * 2.0) + xvv * v[1] ** 2
         total = total + xu * u[2] + xv * v[2] - curve.jets_over(t)[:, 2]
-        return np.asarray(np.sqrt((total.magnitude**2).sum(axis=0)) * (1.0 + 1e-15))
+        return np.asarray(np.sqrt((total.magnitude**2).sum(axis=0)) * (1.0 + 4.0 * EPS))
 
 
 def _parameters(

@@ -14,6 +14,7 @@ import numpy as np
 
 from standoff.cad.opencascade import cast, coordinates, explored, forward
 from standoff.cad.surfaces import basis_surface
+from standoff.cad.tolerances import WHOLE_PROFILE
 from standoff.geometry.curves import FULL_TURN
 
 ANGULAR_U = ("CylindricalSurface", "ConicalSurface", "SphericalSurface")
@@ -93,4 +94,4 @@ def _angular(geometry: Any, kind: str) -> bool:
         profile = profile.BasisCurve()
     round_ = profile.DynamicType().Name() in ("Geom_Circle", "Geom_Ellipse")
     u0, u1, _, _ = geometry.Bounds()
-    return round_ and abs(u1 - u0 - FULL_TURN) < 1e-9 * FULL_TURN
+    return round_ and abs(u1 - u0 - FULL_TURN) < WHOLE_PROFILE * FULL_TURN

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from standoff.cad.opencascade import coordinates, forward, frame_of
+from standoff.cad.measures import area_of
+from standoff.cad.opencascade import forward, frame_of
 from standoff.cad.surfaces import IDENTITY, Carrier
 from standoff.cad.tolerances import FITTED_TRIM, SPHERE_DEPTH
 from standoff.cad.trims import fit
@@ -18,7 +19,7 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array
 
-# Points of each edge, and of a grid over the face's (u, v), that a chart must see.
+# Points of each edge that a chart must see.
 SEEN = 17
 
 
@@ -62,21 +63,13 @@ def sphere_by_angles(geometry: Any, over: tuple[float, ...]) -> Carrier:
 
 def _chart(sphere: Surface, curves: Sequence[Curve], face: Any) -> Sphere | None:
     """The chart about the middle of a face, if it sees all of it."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepTools import BRepTools
-
+    radius = float(np.linalg.norm(sphere.linear[:, 0]))
+    if area_of(face) >= 2.0 * np.pi * radius**2:
+        return None
     ts = np.linspace(0.0, 1.0, SEEN)
     rim = np.array([c.point(c.first + s * (c.last - c.first)) for c in curves for s in ts])
-    geometry, over = BRep_Tool.Surface_s(face), BRepTools.UVBounds_s(face)
-    u0, u1, v0, v1 = over
-    us, vs = np.linspace(u0, u1, 5), np.linspace(v0, v1, 5)
-    grid = [geometry.Value(u, v) for u in us for v in vs]
-    radius = float(np.linalg.norm(sphere.linear[:, 0]))
     rim = (rim - sphere.shift) / radius
-    inner = (np.array([coordinates(p) for p in grid]) - sphere.shift) / radius
     axis = rim.mean(axis=0)
-    if axis @ inner.mean(axis=0) < 0.0:
-        axis = -axis
     length = float(np.linalg.norm(axis))
     if length == 0.0 or (rim @ axis).min() < SPHERE_DEPTH * length:
         return None

@@ -46,3 +46,7 @@ reaches on curved faces in milliseconds."""
 CONSTANT: Final = 1e-11
 """A parameter of a trimming curve that varies by less than this (relative to 1 + itself) along it
 is constant: the roundoff of angles, and of the file's own digits."""
+
+WHOLE_PROFILE: Final = 1e-9
+"""An extruded arc is a whole turn if its angle is one to within this fraction: the digits that
+files keep of angles."""

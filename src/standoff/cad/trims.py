@@ -16,6 +16,7 @@ import numpy as np
 from standoff.cad.curves import (
     Converted,
     NoExactForm,
+    approximated,
     basis_of,
     interpolated,
     radii,
@@ -151,9 +152,7 @@ def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
     def places(ts: Array) -> Array:
         return on.own(np.array([coordinates(flat.Value(float(t))) for t in edge.own(ts)]))
 
-    spans = edge.curve.spans()
-    breaks = np.concatenate([np.linspace(a, b, 5)[:-1] for a, b in pairwise(spans)] + [spans[-1:]])
-    found, knots = interpolated(places, breaks)
+    found, knots = approximated(places, edge.curve.first, edge.curve.last)
     return NurbsPcurve(straightened(found), knots)
 
 
