@@ -19,6 +19,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.solids.spatial.leaves import Leaf
+from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
 from standoff.wording import printable
 
@@ -90,7 +91,7 @@ class Solid:
         """Volume and area of a `Body`, which its report does not hold."""
         from standoff.bodies.enclosed import enclosed_by
 
-        return enclosed_by(self.boundary, range(self.boundary.n_faces), 1e-9)
+        return enclosed_by(self.boundary, range(self.boundary.n_faces), MASS_TOLERANCE)
 
     @staticmethod
     def from_brep(
