@@ -11,7 +11,6 @@ from collections import Counter
 from itertools import pairwise
 
 import numpy as np
-from standoff.cli.telling import tell
 
 from standoff.bodies import Edge, Face
 from standoff.geometry import ConicArc, Cylinder, Plane
@@ -98,9 +97,9 @@ def main() -> None:
     for faces in given.faces:
         a, b = drawn(faces, rng), drawn(faces, rng)
         spatial_distance(a, b, None, (np.eye(3), (3.0, 0, 0)))
-        tell(f"{a.boundary.n_faces} faces, {len(a.leaves)} leaves: gap, median, 99 %, worst (ms)")
+        print(f"{a.boundary.n_faces} faces, {len(a.leaves)} leaves: gap, median, 99 %, worst (ms)")
         for gap in GAPS:
-            tell(f"{gap:8g} {row(a, b, gap, given.poses, rng)}")
+            print(f"{gap:8g} {row(a, b, gap, given.poses, rng)}")
 
 
 if __name__ == "__main__":
