@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import multiprocessing
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from standoff.cad import PartReport, reports_of
@@ -38,13 +38,14 @@ def _read(path: str, heal: bool) -> tuple[PartReport, ...] | str:
         return str(error)
 
 
-def table(folder: Path, heal: bool = False) -> tuple[list[str], int, int]:
-    """Rows of the table, how many different solids were made, and how many there are."""
+def table(folder: Path, heal: bool = False) -> Iterator[tuple[str, int, int]]:
+    """Rows of the table; of each how many solids it stands for, and how many were made first."""
     head = (
         "| file | part | faces | slack / size | file's tolerance | volume error | s | verdict |",
         "|---|---|---|---|---|---|---|---|",
     )
-    rows, made, total = [*head], 0, 0
+    yield head[0], 0, 0
+    yield head[1], 0, 0
     files = sorted(f for f in folder.rglob("*") if f.suffix.lower() in ENDINGS)
     context = multiprocessing.get_context("spawn")
     pool = context.Pool(1)
@@ -57,15 +58,11 @@ def table(folder: Path, heal: bool = False) -> tuple[list[str], int, int]:
             pool = context.Pool(1)
             found = f"took more than {LIMIT:g} s"
         if isinstance(found, str):
-            rows.append(f"| {file.name} | - | - | - | - | - | - | refused: {found} |")
-            total += 1
+            yield f"| {file.name} | - | - | - | - | - | - | refused: {found} |", 0, 1
             continue
         for report in found:
-            rows.append(row(file.name, report))
-            total += 1
-            made += not report.refused
+            yield row(file.name, report), int(not report.refused), 1
     pool.terminate()
-    return rows, made, total
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -73,9 +70,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--heal", action="store_true", help="let OpenCASCADE repair shapes")
     given = parser.parse_args(arguments)
-    rows, made, total = table(given.folder, given.heal)
+    made = total = 0
+    for line, one, count in table(given.folder, given.heal):
+        sys.stdout.write(line + "\n")
+        sys.stdout.flush()
+        made, total = made + one, total + count
     share = f"{made} of {total} different solids made" + ("" if given.heal else " unhealed")
-    sys.stdout.write("\n".join([*rows, "", share]) + "\n")
+    sys.stdout.write(f"\n{share}\n")
     return 0
 
 

@@ -14,7 +14,7 @@ from standoff.version import __version__ as __version__
 if TYPE_CHECKING:
     from standoff.bodies import Body, shapes
     from standoff.bodies.voronoi import voronoi_regions
-    from standoff.cad import read_brep, read_iges, read_step
+    from standoff.cad import read_step
     from standoff.control import min_gain
     from standoff.errors import BodyError, StandoffError
     from standoff.impact import time_of_impact
@@ -51,7 +51,7 @@ else:
                 "shapes",
             ),
             "standoff.bodies.voronoi": ("voronoi_regions",),
-            "standoff.cad": ("read_brep", "read_iges", "read_step"),
+            "standoff.cad": ("read_step",),
             "standoff.control": ("min_gain",),
             "standoff.errors": (
                 "BodyError",
@@ -138,8 +138,6 @@ __all__ = [
     "min_gain",
     "open_recording",
     "plot",
-    "read_brep",
-    "read_iges",
     "read_step",
     "shapes",
     "time_of_impact",

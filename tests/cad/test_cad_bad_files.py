@@ -42,7 +42,7 @@ def test_an_empty_file_and_others(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="give the path"):
         so.read_step(3)
     with pytest.raises(CadError, match="is no BREP file"):
-        so.read_brep(path)
+        so.cad.read_brep(path)
     with pytest.raises(CadError, match="give a file that ends in"):
         so.cad.read_cad(path.rename(tmp_path / "part.prt"))
 
@@ -89,7 +89,7 @@ def test_a_face_that_crosses_itself(tmp_path: Path) -> None:
     bow = BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(polygon.Wire()).Face(), gp_Vec(0, 0, 5))
     path = made.write_brep(bow.Shape(), tmp_path / "bow.brep")
     with pytest.raises(CadError, match=r"face \d: SelfIntersectingWire"):
-        so.read_brep(path)
+        so.cad.read_brep(path)
 
 
 def test_a_face_without_area(tmp_path: Path) -> None:
@@ -114,7 +114,7 @@ def test_a_face_without_area(tmp_path: Path) -> None:
         builder.Add(shell, face)
     builder.Add(solid, shell)
     with pytest.raises(CadError, match=r"face 7 \(a plane\) has no area"):
-        so.read_brep(made.write_brep(solid, tmp_path / "flat.brep"))
+        so.cad.read_brep(made.write_brep(solid, tmp_path / "flat.brep"))
 
 
 def test_one_refused_part_refuses_all_unless_asked(tmp_path: Path) -> None:
@@ -127,9 +127,9 @@ def test_one_refused_part_refuses_all_unless_asked(tmp_path: Path) -> None:
     builder.Add(compound, _open_box())
     path = made.write_brep(compound, tmp_path / "two.brep")
     with pytest.raises(CadError, match="1 of 2 parts refused") as caught:
-        so.read_brep(path)
+        so.cad.read_brep(path)
     assert len(caught.value.refusals) == 1
-    readable = so.read_brep(path, keep="readable")
+    readable = so.cad.read_brep(path, keep="readable")
     assert len(readable) == 1
     assert "left out" in readable.report()
 
@@ -137,7 +137,7 @@ def test_one_refused_part_refuses_all_unless_asked(tmp_path: Path) -> None:
 def test_options_are_checked(tmp_path: Path) -> None:
     path = made.write_step(made.box(1, 2, 3), tmp_path / "box.step")
     for options in ({"unit": "furlong"}, {"keep": "some"}):
-        with pytest.raises(so.StandoffError, match="give one of|give 'all'"):
+        with pytest.raises(so.StandoffError, match=r"give one of|give 'all'"):
             so.read_step(path, **options)
     with pytest.raises(TypeError, match="give True or False"):
         so.read_step(path, heal="yes")  # type: ignore[arg-type]

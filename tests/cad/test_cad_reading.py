@@ -110,7 +110,7 @@ def test_a_brep_file_and_a_wrapped_shape(tmp_path: Path) -> None:
     class Wrapped:
         wrapped = made.plate()
 
-    from_file = so.read_brep(made.write_brep(Wrapped.wrapped, tmp_path / "plate.brep"))
+    from_file = so.cad.read_brep(made.write_brep(Wrapped.wrapped, tmp_path / "plate.brep"))
     assert from_file.unit == ""
     wrapped = so.cad.from_shape(Wrapped(), name="plate")
     assert wrapped.parts[0].report.volume == from_file.parts[0].report.volume
@@ -126,7 +126,22 @@ def test_an_iges_file_needs_healing(tmp_path: Path) -> None:
     path = tmp_path / "box.igs"
     writer.Write(str(path))
     with pytest.raises(so.cad.CadError, match="heal=True"):
-        so.read_iges(path)
-    part = so.read_iges(path, heal=True).parts[0]
+        so.cad.read_iges(path)
+    part = so.cad.read_iges(path, heal=True).parts[0]
     assert any("sewn" in one for one in part.report.healed)
     np.testing.assert_allclose(part.report.volume, 6000.0, rtol=1e-9)
+
+
+def test_the_check_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from standoff.cli import main
+
+    path = made.write_step(made.plate(), tmp_path / "plate.step")
+    capsys.readouterr()
+    assert main(["check", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "15 faces (4 cylinder, 11 plane)" in told
+    assert "not convex: a Boundary" in told
+    assert main(["check", str(path), "--json"]) == 0
+    assert '"file_unit": "mm"' in capsys.readouterr().out
+    path.write_text("")
+    assert main(["check", str(path)]) == 2

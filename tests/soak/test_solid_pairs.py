@@ -24,7 +24,8 @@ def square(half):
 
 def truths():
     control = np.array([[0.25, 0.0], [0.8, 0.35], [-0.05, 0.65], [0.35, 1.0]])
-    lid = [Segment(control[-1], np.array([0.0, 1.0])), Segment(np.zeros(2), control[0])]
+    top = np.array([0.0, 1.0])
+    lid, axis = [Segment(control[-1], top), Segment(np.zeros(2), control[0])], Segment(top, 0 * top)
     hole = Arc(np.zeros(2), 0.25, -np.pi, np.pi)
     groove = Arc(np.array([0.6, 0.0]), 0.2, -0.5 * np.pi, -1.5 * np.pi)
     rest = polygon((0.6, 0.2), (0.15, 0.5), (0.15, -0.4), (0.6, -0.2))[:-1]
@@ -34,7 +35,7 @@ def truths():
             Swept(Outline(square(0.5)), -0.5, 0.5), Swept(Outline(square(0.3)), -0.3, 0.3)
         ),
         "elbow": Elbow(0.5, 0.14, 0.22, 0.3),
-        "vase": Turned(Outline([Cubic(control), *lid], [Segment(np.array([0.0, 1.0]), np.zeros(2))])),
+        "vase": Turned(Outline([Cubic(control), *lid], [axis])),
         "pulley": Turned(Outline([groove, *rest])),
         "egg": Egg(np.array([0.5, 0.35, 0.25])),
     }  # fmt: skip
@@ -94,7 +95,7 @@ def stock():
 @pytest.fixture(scope="module")
 def drawn(stock):
     (a, first), (b, second) = (stock.get(name) for name in PAIR)
-    return a, b, (first, second), draw_poses(a, b, 40, np.random.default_rng(3))
+    return a, b, (first, second), draw_poses(a, b, 30, np.random.default_rng(3))
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +106,8 @@ def asked():
     def ask(a, b, pose_a, pose_b):
         key = a.name, pose_a.tobytes(), pose_b.tobytes()
         if key not in known:
-            known[key] = spatial_distance(a, b, pose_a, pose_b)
+            # few are enough for a true interval, and for these poses nearly always for a proof
+            known[key] = spatial_distance(a, b, pose_a, pose_b, evaluations=5000)
         return known[key]
 
     return ask
@@ -119,7 +121,7 @@ def judged(drawn, ask):
 def test_the_library_s_answers_are_sound(drawn, asked):
     verdict, lines = judged(drawn, asked)
     assert verdict.sound, lines
-    assert verdict.poses == 40
+    assert verdict.poses == 30
     names = {status for _, status in verdict.statuses}
     assert {"CONVERGED", "OVERLAPPING", "CONTINUUM"} <= names
     assert "overlap" in solid_pairs.table(verdict)

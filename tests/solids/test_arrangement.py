@@ -77,7 +77,14 @@ def test_the_page_names_and_draws_the_parts(assembly: Arrangement) -> None:
     report = assembly_report(assembly.distances(within=10.0), Wanted(0.05, None))
     file = AssemblyFile(Path("assembly.step"), assembly.title, assembly.unit)
     text = page_of(file, report, Looked(0.0, 0.0, 1))  # type: ignore[arg-type]
-    for part in ("CONTAINED", "A bolt in a plate", "assembly.step", "gap (mm)", "data:image/png"):
+    for part in (
+        "CONTAINED",
+        "A bolt in a plate",
+        "at rest",
+        "assembly.step",
+        "gap (mm)",
+        "data:image/png",
+    ):
         assert part in text
     assert "at 0 s" not in text
 

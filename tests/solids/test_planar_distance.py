@@ -233,3 +233,8 @@ def test_a_budget_ends_with_a_proven_interval() -> None:
     short = distance(a, b, HOME, planar_pose(2.3, 0.0), deadline=1)
     assert short.status is so.Status.DEADLINE
     assert short.lower_bound <= full.distance <= short.upper_bound
+    # boundaries that may still meet: no bound is claimed that an overlap would break
+    deep = distance(a, b, HOME, planar_pose(1.6, 0.0), deadline=200)
+    assert deep.status in (so.Status.DEADLINE, so.Status.OVERLAPPING)
+    if deep.status is so.Status.DEADLINE:
+        assert deep.lower_bound <= distance(a, b, HOME, planar_pose(1.6, 0.0)).distance

@@ -65,7 +65,7 @@ def test_splines_blocks_and_mirrored_arcs(tmp_path: Path) -> None:
             [((0, 0), (1, 0)), ((1, 0), (1, 1)), ((1, 1), (0, 0)), ((0, 0), (1, 0))],
             r"3 curves end at \[0",
         ),
-        ([((0, 0), (1, 0)), ((1, 0), (0, 0))], r"turns back on itself at \["),
+        ([((0, 0), (1, 0)), ((1, 0), (0, 0))], r"crosses or touches itself at \["),
         ([((0, 0), (1, 0)), ((1, 0), (1, 0))], r"no length, at \[1"),
         (
             [((0, 0), (2, 2)), ((2, 2), (2, 0)), ((2, 0), (0, 1)), ((0, 1), (0, 0))],

@@ -61,7 +61,7 @@ REFUSED: list[tuple[Any, str]] = [
     ([[*square(1.0)], [*square(1.0)]], "given twice"),
     ([square(1.0), square(1.0, 1.0)], "crosses or touches itself"),
     ([ConicArc((0, 0, 1), (1, 0, 0), (0, 1, 0))], "leaves the plane"),
-    ([Line((0, 0), (1, 0)), Line((1, 0), (0, 0))], r"turns back on itself at \["),
+    ([Line((0, 0), (1, 0)), Line((1, 0), (0, 0))], r"crosses or touches itself at \["),
     (polygon((0, 0), (1, 0), (0.5, 0), (0.5, 1)), "turns back on itself|crosses or touches"),
     ([], "has no curves"),
     ([FormulaCurve("sin(t)", "sin(t)*cos(t)", "0", 0.1, 2 * np.pi + 0.1)], "crosses|no area"),

@@ -126,7 +126,8 @@ class Assembly:
     source : str
         The file's name.
     refusals : tuple of str
-        Parts left out because `keep="readable"` was asked for, with the reasons.
+        Parts left out because `keep="readable"` was asked for, with the reasons, and shapes without
+        a face.
     seconds : float
     """
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.cad.opencascade import KINDS, cast, explored, is_kind, matrix_of
+from standoff.cad.opencascade import KINDS, cast, compound, explored, is_kind, matrix_of
 from standoff.errors import CadError
 from standoff.geometry.validation import Array
 
@@ -139,13 +139,15 @@ def _below(
 
 
 def _solids(shape: Any) -> Iterator[Any]:
-    """The solids of a shape; then its shells, and its faces, that are in none."""
+    """The solids of a shape; then the shells that are in none, and all loose faces as one."""
     if is_kind(shape, "solid") or is_kind(shape, "shell") or is_kind(shape, "face"):
         yield shape
         return
     yield from explored(shape, "solid")
     yield from explored(shape, "shell", "solid")
-    yield from explored(shape, "face", "shell")
+    loose = list(explored(shape, "face", "shell"))
+    if loose:
+        yield compound(loose)
 
 
 def _placed(shape: Any, pose: Array, name: str, colour: Colour | None) -> Instance:

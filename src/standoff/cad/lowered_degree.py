@@ -58,7 +58,8 @@ def _lowered(net: Array, vector: KnotVector, parts: int) -> tuple[Array, Array, 
     solve = np.linalg.inv(bernstein(LOWER, nodes)) @ bernstein(vector.degree, nodes)
     solve[0], solve[-1] = np.eye(vector.degree + 1)[[0, -1]]
     raised = _elevation(LOWER, vector.degree)
-    rows, breaks, off = [], [], np.zeros(4)
+    rows: list[Array] = []
+    breaks, off = [], np.zeros(4)
     for (start, matrix), (a, b) in zip(bezier_spans(vector), pairwise(vector.breaks), strict=True):
         whole = np.tensordot(matrix, net[start : start + vector.degree + 1], 1)
         for first, last in pairwise(np.linspace(0.0, 1.0, parts + 1)):

@@ -18,6 +18,7 @@ from standoff.bodies.enclosed import MOST_NODES
 from standoff.bodies.moments.cells import integrate
 from standoff.bodies.moments.face_cells import face_cells
 from standoff.bodies.moments.flux import AREA, COLUMNS, Frame
+from standoff.bodies.report import BoundaryReport
 from standoff.bodies.tolerances import JOIN_TOLERANCE, ROUNDOFF
 from standoff.cad.assembly import PartReport
 from standoff.cad.healing import healed
@@ -90,7 +91,7 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport]:
         raise Refused(f"{error}{_place(error, pieces)}") from error
     volume, area = volume_of(shape), area_of(shape)
     found = boundary.check()
-    assert hasattr(found, "volume")
+    assert isinstance(found, BoundaryReport)
     off = abs(found.volume - volume) / abs(volume)
     _check_areas(boundary, pieces, size)
     if off > FILE_AREA + found.slack * found.area / abs(volume):

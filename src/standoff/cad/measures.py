@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from OCP.TopoDS import TopoDS_Edge
 
 from standoff.cad.opencascade import coordinates, explored
 from standoff.cad.tolerances import QUADRATURE
@@ -12,9 +13,7 @@ from standoff.cad.tolerances import QUADRATURE
 WRONG = (
     "BRepCheck_SelfIntersectingWire",
     "BRepCheck_IntersectingWires",
-    "BRepCheck_NotClosed",
     "BRepCheck_UnorientableShape",
-    "BRepCheck_CollapsedFace",
 )
 """What no tolerance excuses."""
 
@@ -57,31 +56,28 @@ def tolerance_of(shape: Any) -> float:
 
 def faults_of(shape: Any) -> list[str]:
     """What OpenCASCADE's check finds wrong with shells and faces, by their numbers."""
-    from OCP.BRepCheck import BRepCheck_Analyzer
+    from OCP.BRepCheck import BRepCheck_Analyzer, BRepCheck_Face, BRepCheck_Shell, BRepCheck_Wire
 
     analyzer = BRepCheck_Analyzer(shape)
     if analyzer.IsValid():
         return []
     found = []
-    for kind in ("shell", "face"):
-        for number, part in enumerate(explored(shape, kind), 1):
-            if analyzer.IsValid(part):
-                continue
-            names = _statuses(analyzer, part)
-            for wire in explored(part, "wire") if kind == "face" else ():
-                names += _statuses(analyzer, wire)
-                names += [n for e in explored(wire, "edge") for n in _statuses(analyzer, e, wire)]
-            found += [
-                f"{kind} {number}: {name.removeprefix('BRepCheck_')}"
-                for name in sorted(set(names))
-                if name in WRONG
-            ]
+    for number, shell in enumerate(explored(shape, "shell"), 1):
+        if not analyzer.IsValid(shell):
+            found += _told(f"shell {number}", [BRepCheck_Shell(shell).Orientation()])
+    for number, face in enumerate(explored(shape, "face"), 1):
+        if not analyzer.IsValid(face):
+            statuses = [BRepCheck_Face(face).IntersectWires()]
+            for wire in explored(face, "wire"):
+                first, second = TopoDS_Edge(), TopoDS_Edge()
+                statuses.append(BRepCheck_Wire(wire).SelfIntersect(face, first, second))
+            found += _told(f"face {number}", statuses)
     return found
 
 
-def _statuses(analyzer: Any, part: Any, within: Any = None) -> list[str]:
-    result = analyzer.Result(part)
-    return [] if result is None else [status.name for status in result.Status()]
+def _told(place: str, statuses: list[Any]) -> list[str]:
+    names = sorted({status.name for status in statuses} & set(WRONG))
+    return [f"{place}: {name.removeprefix('BRepCheck_')}" for name in names]
 
 
 def free_edges(shape: Any) -> list[str]:

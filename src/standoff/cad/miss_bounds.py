@@ -8,7 +8,6 @@ nearly cancels. Spans that leave too much are halved.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -18,17 +17,17 @@ from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.curves import Curve
 from standoff.geometry.intervals import Interval, cos, interval, sin
-from standoff.geometry.net_bounds import curve_nets
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.nurbs_curves import NurbsCurve
+from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.patch_bounds import cut
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Spans of a piece at first, and how often they are halved at most.
-FIRST_SPANS = 16
+# Spans of an edge at first, and how often they are halved at most.
+FIRST_SPANS = 32
 MOST_HALVINGS = 9
 
 
@@ -52,30 +51,30 @@ def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> f
     closed = closed_bound(pcurve, curve, surface)
     if closed is not None:
         return closed
-    worst = 0.0
-    spans = curve.spans()
     if isinstance(surface, NurbsSurface) and isinstance(curve, NurbsCurve):
         proven = polynomial_bound(pcurve, curve, surface)
         if proven is not None:
             return proven
-    for piece, first, last in pcurve.pieces(curve.first, curve.last):
-        inside = spans[(spans > first) & (spans < last)]
-        for a, b in pairwise([first, *inside, last]):
-            worst = max(worst, _piece_bound(piece, curve, surface, (float(a), float(b)), size))
-    return worst
+    return _interval_bound(pcurve, curve, surface, size)
 
 
-def _piece_bound(
-    piece: Pcurve, curve: Curve, surface: Surface, over: tuple[float, float], size: float
-) -> float:
-    ts = np.linspace(*over, FIRST_SPANS + 1)
+def _interval_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> float:
+    flat = None
+    ends = np.asarray(curve.spans(), dtype=np.float64)
+    if isinstance(pcurve, NurbsPcurve):
+        w = pcurve.matrix[:, 2]
+        flat = NurbsCurve(pcurve.matrix[:, :2] / w[:, None], pcurve.knots, w)
+        ends = np.union1d(ends, flat.spans())
+    ends = np.clip(ends, curve.first, curve.last)
+    each = max(2, FIRST_SPANS // len(ends))
+    ts = np.unique([np.linspace(a, b, each + 1) for a, b in pairwise(np.unique(ends))])
     low, high = ts[:-1], ts[1:]
     proven = 0.0
     for halving in range(MOST_HALVINGS + 1):
-        ends, place = np.unique(np.concatenate([low, high]), return_inverse=True)
-        at = _misses(piece, curve, surface, ends)[place]
+        places, which = np.unique(np.concatenate([low, high]), return_inverse=True)
+        at = _misses(pcurve, curve, surface, places)[which]
         at = np.maximum(at[: len(low)], at[len(low) :])
-        rest = (high - low) ** 2 / 8.0 * _second(piece, curve, surface, low, high)
+        rest = (high - low) ** 2 / 8.0 * _second(pcurve, flat, curve, surface, Interval(low, high))
         rest = np.where(np.isnan(rest), np.inf, rest)
         allowed = max(BOUND_FLOOR * size, BOUND_SHARE * max(float(at.max()), proven))
         open_ = rest > allowed
@@ -98,10 +97,11 @@ def _misses(piece: Pcurve, curve: Curve, surface: Surface, ts: Array) -> Array:
     return np.array(found)
 
 
-def _second(piece: Pcurve, curve: Curve, surface: Surface, low: Array, high: Array) -> Array:
+def _second(
+    pcurve: Pcurve, flat: NurbsCurve | None, curve: Curve, surface: Surface, t: Interval
+) -> Array:
     """(n,) bounds of |g''| over spans of the parameter."""
-    t = Interval(low, high)
-    u, v = _parameters(piece, t)
+    u, v = _parameters(pcurve, flat, t)
     boxes = Boxes(np.stack([u[0].lo, v[0].lo], 1), np.stack([u[0].hi, v[0].hi], 1))
     _, xu, xv, xuu, xuv, xvv = _jets(surface, boxes)
     with np.errstate(all="ignore"):
@@ -110,23 +110,21 @@ def _second(piece: Pcurve, curve: Curve, surface: Surface, low: Array, high: Arr
         return np.asarray(np.sqrt((total.magnitude**2).sum(axis=0)) * (1.0 + 1e-15))
 
 
-def _parameters(piece: Pcurve, t: Interval) -> tuple[list[Interval], list[Interval]]:
+def _parameters(
+    pcurve: Pcurve, flat: NurbsCurve | None, t: Interval
+) -> tuple[list[Interval], list[Interval]]:
     """(u, u', u'') and (v, v', v'') over spans of the parameter."""
-    if piece.kind == L.BEZIER:
-        rows = piece.matrix
-        block = np.column_stack([rows[:, :2], np.zeros(len(rows)), rows[:, 2]])
-        given: Any = piece
-        breaks = np.array([given.first, given.last])
-        jets = curve_nets(block[None], breaks, t).jets()[:, [0, 1, 3]]
+    if flat is not None:
+        jets = flat.jets_over(t)
         return [jets[0, k] for k in range(3)], [jets[1, k] for k in range(3)]
     one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
     c, s = cos(t), sin(t)
     lines = [(t, zero, one), (one, zero, zero), (zero, zero, zero)]
     rounds = [(c, s, one), (-s, c, zero), (-c, -s, zero)]
-    columns = lines if piece.kind == L.LINE else rounds
+    columns = lines if pcurve.kind == L.LINE else rounds
     a, b, w = (
         [sum((x * float(m) for x, m in zip(column, row, strict=True)), zero) for column in columns]
-        for row in piece.matrix
+        for row in pcurve.matrix
     )
     return _quotient(a, w), _quotient(b, w)
 

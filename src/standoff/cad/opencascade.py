@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -62,6 +62,18 @@ def forward(shape: Any) -> bool:
 
 def is_kind(shape: Any, kind: str) -> bool:
     return bool(shape.ShapeType() == KINDS[kind])
+
+
+def compound(shapes: Sequence[Any]) -> Any:
+    """Several shapes as one."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    made, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(made)
+    for shape in shapes:
+        builder.Add(made, shape)
+    return made
 
 
 def coordinates(p: Any) -> Array:

@@ -59,7 +59,7 @@ def _greatest(
     away = [
         _away(pcurve, curve, surface, t) for t in 0.5 * (sum(over) + nodes * (over[1] - over[0]))
     ]
-    return lebesgue * most * max(away)
+    return float(lebesgue * most * max(away))
 
 
 def _away(pcurve: Pcurve, curve: NurbsCurve, surface: NurbsSurface, t: float) -> float:

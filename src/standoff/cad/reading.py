@@ -205,16 +205,21 @@ def _assembly(
     if not instances:
         raise CadError(f"{source} has no solid.")
     kept: list[tuple[Any, Made]] = []
-    parts, refusals = [], []
+    parts, refusals, empty = [], [], []
     for instance in instances:
         made = next((m for shape, m in kept if shape.IsPartner(instance.shape)), None)
         if made is None:
             made = made_part(instance.shape, instance.name, heal)
             kept.append((instance.shape, made))
+        if not made.report.faces:
+            empty.append(f"{instance.name}: left out, it has no face")
+            continue
         if made.shape is None:
             refusals.append(f"{instance.name}: {made.report.refused}")
             continue
         parts.append(Part(instance.name, made.shape, instance.pose, instance.colour, made.report))
+    if not parts and not refusals:
+        raise CadError(f"{source} has no solid with faces.")
     if refusals and (keep == "all" or not parts):
         more = f"; and {len(refusals) - MOST_NAMED} more" if len(refusals) > MOST_NAMED else ""
         raise CadError(
@@ -224,7 +229,7 @@ def _assembly(
             refusals=tuple(refusals),
         )
     spent = perf_counter() - start
-    return Assembly(tuple(parts), unit, file_unit, source, tuple(refusals), spent)
+    return Assembly(tuple(parts), unit, file_unit, source, (*refusals, *empty), spent)
 
 
 def reports_of(path: Any, *, heal: bool = False) -> tuple[PartReport, ...]:

@@ -68,9 +68,9 @@ def _chart(sphere: Surface, curves: Sequence[Curve], face: Any) -> Sphere | None
     ts = np.linspace(0.0, 1.0, SEEN)
     rim = np.array([c.point(c.first + s * (c.last - c.first)) for c in curves for s in ts])
     geometry, over = BRep_Tool.Surface_s(face), BRepTools.UVBounds_s(face)
-    grid = [
-        geometry.Value(u, v) for u in np.linspace(*over[:2], 5) for v in np.linspace(*over[2:], 5)
-    ]
+    u0, u1, v0, v1 = over
+    us, vs = np.linspace(u0, u1, 5), np.linspace(v0, v1, 5)
+    grid = [geometry.Value(u, v) for u in us for v in vs]
     radius = float(np.linalg.norm(sphere.linear[:, 0]))
     rim = (rim - sphere.shift) / radius
     inner = (np.array([coordinates(p) for p in grid]) - sphere.shift) / radius

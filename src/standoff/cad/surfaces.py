@@ -249,7 +249,7 @@ def _into_plane(curve: Curve, extent: float) -> tuple[Curve, float]:
         a, b, centre = curve.basis().T
         moved = float(abs(a[1]) + abs(b[1]) + abs(centre[1]))
         flat = [v * [1.0, 0.0, 1.0] for v in (centre, a, b)]
-        made = ConicArc(*flat, curve.first, curve.last)
+        made = ConicArc(flat[0], flat[1], flat[2], curve.first, curve.last)
     if moved > OFF_PLANE_PROFILE * extent:
         raise NoExactForm(
             f"a surface of revolution whose profile leaves the plane of its axis by {moved:.3g}"
@@ -275,8 +275,8 @@ def kind_of(face: Any) -> str:
     """The kind of a face's surface, as reports name it."""
     from OCP.BRep import BRep_Tool
 
-    name = basis_surface(BRep_Tool.Surface_s(face)).DynamicType().Name().removeprefix("Geom_")
-    return KINDS.get(name, name)
+    name: str = basis_surface(BRep_Tool.Surface_s(face)).DynamicType().Name()
+    return KINDS.get(name.removeprefix("Geom_"), name)
 
 
 MAKERS: dict[str, Callable[[Any, Range], Carrier]] = {

@@ -175,7 +175,8 @@ def hint(geometry: Any, edge: Converted, on: Carrier) -> Array | None:
         t = 0.5 * (geometry.FirstParameter() + geometry.LastParameter())
     if not np.isfinite(t) or abs(t) > 1e50:
         return None
-    return on.own(coordinates(geometry.Value(t))[None])[0]
+    found: Array = on.own(coordinates(geometry.Value(t))[None])[0]
+    return found
 
 
 def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPcurve:

@@ -110,7 +110,10 @@ def _poses(scene: Scene, report: Report, time: float) -> dict[str, Pose]:
 
 def _summary(scene: Scene, report: Report, looked: Looked) -> str:
     unit = escape(scene.length_unit)
-    if looked.frames == 1:
+    world: Any = report.world
+    if isinstance(world, PartsAtRest):
+        when = "at rest"
+    elif looked.frames == 1:
         when = f"at {looked.start:g} s"
     else:
         when = (

@@ -140,9 +140,9 @@ class CheckCommand:
     Exit codes: 0 done, 1 the picture could not be written, 2 bad input, or a body that is rejected.
     """
 
-    what: Annotated[Positional[str], arg(metavar="SCENE.toml|BODY.json|SHAPE")]
-    """A scene, a file of patches, or a shape written as in a scene, such as
-    'shape = "box", size = [1, 2, 3]'."""
+    what: Annotated[Positional[str], arg(metavar="SCENE.toml|BODY.json|PART.step|SHAPE")]
+    """A scene, a file of patches, a CAD file (STEP, BREP or IGES), or a shape written as in a
+    scene, such as 'shape = "box", size = [1, 2, 3]'."""
     body: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """Only this one of a scene's bodies."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None

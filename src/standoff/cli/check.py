@@ -14,6 +14,7 @@ from rich.text import Text
 from standoff import __version__
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.body_report import report_rows
+from standoff.cli.check_cad import is_cad_file, run_check_cad
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import (
@@ -42,6 +43,8 @@ def run_check(command: CheckCommand) -> int:
     WriteError
         If a picture could not be written.
     """
+    if is_cad_file(command.what):
+        return run_check_cad(command)
     found = subjects(command.what, command.body)
     targets = [_target(command.plot, subject, found) for subject in found]
     files = _files(found, targets)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -11,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from standoff.bodies.plain_data import without_roundoff
+from standoff.clearance.assembly import PartsAtRest
 from standoff.clearance.report import Looked, Report, Row, at_least
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
@@ -53,16 +55,18 @@ def print_report(
 
 
 def _head(scene: Scene, report: Report, looked: Looked) -> list[str]:
-    world = report.world
+    world: Any = report.world
     count = len(report.rows) + len(report.far)
     lines = [
         line(
-            "scene",
+            "assembly" if isinstance(world, PartsAtRest) else "scene",
             f"{scene.title}: {counted(len(world.bodies), 'body', 'bodies')}, "
             f"{counted(count, 'pair')} count{'s' if count == 1 else ''}",
         ),
         *(line("", note) for note in scene.notes),
     ]
+    if isinstance(world, PartsAtRest):
+        return lines
     if looked.frames == 1:
         return [*lines, line("time", time_text(looked.start))]
     span = f"{time_text(looked.start)} to {time_text(looked.end)}"

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from standoff.solids.planar.dxf import read_dxf
     from standoff.solids.planar.solid import PlanarSolid
     from standoff.solids.query import distance
+    from standoff.solids.spatial.points import PointDistances
+    from standoff.solids.spatial.solid import Solid
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -33,6 +35,8 @@ else:
             "standoff.solids.planar.dxf": ("read_dxf",),
             "standoff.solids.planar.solid": ("PlanarSolid",),
             "standoff.solids.query": ("distance",),
+            "standoff.solids.spatial.points": ("PointDistances",),
+            "standoff.solids.spatial.solid": ("Solid",),
         },
     )
 
@@ -44,6 +48,8 @@ __all__ = [
     "Overlap",
     "PartsAnswer",
     "PlanarSolid",
+    "PointDistances",
+    "Solid",
     "SolidCounts",
     "SolidProximity",
     "distance",

@@ -27,14 +27,14 @@ from standoff.kernels.solids.planar_pieces import (
     turned_into,
 )
 from standoff.kernels.solids.planar_tolerances import (
+    END_OF_PIECE,
     NEWTON_END,
     NEWTON_STEPS,
-    PIECE_END,
     SAFE_NORMAL,
     SAME_POINT,
     SINGULAR_STEP,
     STATIONARY,
-    STRAIGHT,
+    STRAIGHT_LEVEL,
 )
 
 
@@ -193,7 +193,7 @@ def crossing(a, piece_a, b, piece_b, found):
 @small
 def at_end(piece, t):
     """1 at the piece's last point, -1 at its first, 0 between."""
-    length = PIECE_END * abs(piece.last - piece.first)
+    length = END_OF_PIECE * abs(piece.last - piece.first)
     if abs(t - piece.last) <= length:
         return 1.0
     return -1.0 if abs(t - piece.first) <= length else 0.0
@@ -238,7 +238,7 @@ def bend_toward(outline, piece, t, nx, ny, back):
 
 @small
 def potential_of(near, nx, ny, k, extent):
-    k = 0.0 if abs(k) * extent < STRAIGHT else k
+    k = 0.0 if abs(k) * extent < STRAIGHT_LEVEL else k
     x, y = 0.5 * (near.ax + near.bx), 0.5 * (near.ay + near.by)
     return Potential(False, x, y, nx, ny, k)
 
@@ -260,7 +260,7 @@ def slope_over(outline, leaf, t, nx, ny):
     first, last = leaf_real(outline, leaf, FROM), leaf_real(outline, leaf, UNTIL)
     _, _, tx, ty, _ = frame_at(outline, leaf, t)
     before = after = nx * tx + ny * ty
-    near = PIECE_END * abs(last - first)
+    near = END_OF_PIECE * abs(last - first)
     if abs(t - first) <= near:
         other = leaf_int(outline, leaf, BEFORE)
         _, _, tx, ty, _ = frame_at(outline, other, leaf_real(outline, other, UNTIL))

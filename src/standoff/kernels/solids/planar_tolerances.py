@@ -19,14 +19,14 @@ STATIONARY: Final = 1e-6
 """Sine of the angle by which a pair's direction may leave the normal cone of a local minimum:
 Newton's steps end at some 1e-8."""
 
-PIECE_END: Final = 1e-9
+END_OF_PIECE: Final = 1e-9
 """A parameter this near to an end of its piece (a fraction of the piece) is at the end."""
 
 SAME_ANGLE: Final = 1e-12
 """Radians by which an arc's extreme may lie outside the arc and is still counted: the roundoff of
 its angle, and one point too many makes no bound wrong."""
 
-STRAIGHT: Final = 1e-9
+STRAIGHT_LEVEL: Final = 1e-9
 """A level curve whose curvature times the extent is less than this is taken as straight: any
 potential makes a true bound."""
 

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.answer import Continuum
 from standoff.solids.planar.pair import Queried
-from standoff.solids.planar.tolerances import LONG_SET, SAME_PAIR
+from standoff.solids.planar.tolerances import LONG_SET, ONE_PAIR
 
 Array = NDArray[np.float64]
 
 
 def distinct(pair: Queried, near: Array, rows: Array) -> Array:
-    """The rows without those that are a better one's to within SAME_PAIR, nearest first."""
+    """The rows without those that are a better one's to within ONE_PAIR, nearest first."""
     kept: list[Array] = []
-    reach = SAME_PAIR * pair.size
+    reach = ONE_PAIR * pair.size
     for row in rows:
         if all(np.abs(row[2:6] - other[2:6]).max() > reach for other in kept):
             kept.append(row)
@@ -32,14 +32,14 @@ def continuum_of(pair: Queried, near: Array, least: float) -> Continuum | None:
         found = _piece(pair, row, least)
         if found is not None:
             pieces.append(found)
-    chains = _chained(pieces, SAME_PAIR * pair.size)
+    chains = _chained(pieces, ONE_PAIR * pair.size)
     if not chains:
         return None
     kind, first, last, extent = max(chains, key=lambda chain: chain[3])
     if extent <= LONG_SET * pair.size:
         return None
     shape: Literal["line", "arc"] = "line" if kind == "line" else "arc"
-    if np.abs(first - last).max() <= SAME_PAIR * pair.size:
+    if np.abs(first - last).max() <= ONE_PAIR * pair.size:
         return Continuum(shape, ())
     ends = tuple((pair.world(end[:2]), pair.world(end[2:])) for end in (first, last))
     return Continuum(shape, ends)

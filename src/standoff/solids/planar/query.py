@@ -147,8 +147,10 @@ def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None)
     near = searched.found[searched.found[:, 0] <= searched.least + pair.tolerance]
     rows = distinct(pair, near, searched.found if minima else near)
     continuum = continuum_of(pair, near, searched.least)
-    proven = searched.least - max(searched.proven, 0.0) <= 2.0 * pair.tolerance
-    if not proven:
+    # what a bound near 0 leaves open is whether the boundaries meet, and so which case it is
+    apart = searched.proven > 0.0
+    proven = searched.least - searched.proven <= pair.tolerance + 2.0 * pair.roundoff
+    if not (apart and proven):
         status = Status.DEADLINE if searched.ended == S.SPENT else Status.WITHIN
     elif inside:
         status = Status.CONTAINED
@@ -161,7 +163,7 @@ def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None)
         smooth = Smoothness.PARTIAL
     elif ties > 1:
         smooth = Smoothness.ONE_SIDED
-    bounds = searched.proven, searched.least
+    bounds = searched.proven if apart else -np.inf, searched.least
     return _answer(pair, status, bounds, pairs, smooth, _counts(searched.counts), continuum, inside)
 
 
@@ -190,11 +192,13 @@ def _answer(
             ]
         )
         entries.gradient(arms, gradient)
+    if overlap is None and status is not Status.TOUCHING:
+        lower = max(lower, 0.0)
     lower -= pair.slack
     return SolidProximity(
         status=status,
         distance=distance,
-        lower_bound=max(lower, 0.0) if overlap is None and status is not Status.TOUCHING else lower,
+        lower_bound=lower,
         upper_bound=distance + pair.slack,
         slack=pair.slack,
         point_a=best.point_a,

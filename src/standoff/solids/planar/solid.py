@@ -17,7 +17,7 @@ from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
 from standoff.kernels.solids import planar_layout as P
-from standoff.kernels.solids.planar_tolerances import PIECE_END
+from standoff.kernels.solids.planar_tolerances import END_OF_PIECE
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
@@ -302,7 +302,7 @@ class PlanarSolid(KeepsReadOnly):
         for end, owner in ((P.FROM, leaf), (P.UNTIL, outline.leaf_int(leaf, P.AFTER))):
             vertex = outline.leaf_int(owner, P.VERTEX)
             length = abs(outline.leaf_real(leaf, P.UNTIL) - outline.leaf_real(leaf, P.FROM))
-            near = abs(t - outline.leaf_real(leaf, end)) <= PIECE_END * length
+            near = abs(t - outline.leaf_real(leaf, end)) <= END_OF_PIECE * length
             if near and vertex >= 0 and self.kinds[vertex] != "smooth":
                 return Feature("vertex", vertex), ()
         return Feature("edge", outline.leaf_int(leaf, P.CURVE)), (t,)

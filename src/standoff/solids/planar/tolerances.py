@@ -39,7 +39,7 @@ LONG_SET: Final = 1e-3
 """Nearest pairs that reach over more than this fraction of the pair's size are a continuum, fewer
 one pair."""
 
-SAME_PAIR: Final = 3e-5
+ONE_PAIR: Final = 3e-5
 """Nearest pairs closer to each other than this fraction of the pair's size, both points, are one:
 where a distance grows quadratically, the pairs within the tolerance reach as far as its root."""
 

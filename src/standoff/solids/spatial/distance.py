@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
+from standoff.bodies.features import NO_FEATURE
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
@@ -16,6 +18,7 @@ from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, wi
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid import Solid, as_solid
 from standoff.solids.spatial.ties import continuum_of, distinct
+from standoff.solids.spatial.tolerances import PARTED, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -24,12 +27,19 @@ TRIED = 6
 # Starts of the ascent to the largest common ball.
 STARTS = 3
 MOST_TIES = 64
+UNDEFINED = Smoothness.UNDEFINED
 # Of the tolerance: rounding of bounds that are proven to it.
 PROVEN = 1.001
 
 
 def spatial_distance(
-    a: Any, b: Any, pose_a: Any = None, pose_b: Any = None, *, evaluations: int = BUDGET
+    a: Any,
+    b: Any,
+    pose_a: Any = None,
+    pose_b: Any = None,
+    *,
+    evaluations: int = BUDGET,
+    within: float | None = None,
 ) -> SolidProximity:
     """The proven distance of two solids at poses.
 
@@ -40,6 +50,8 @@ def spatial_distance(
         The identity by default.
     evaluations : int
         Boxes that potentials are bounded over, at most: what is then open stays an interval.
+    within : float, optional
+        Horizon, length: of solids farther apart only that is proven, with the status FAR.
 
     Returns
     -------
@@ -61,9 +73,13 @@ def spatial_distance(
         S.INSIDE if inside == "B" else S.OUTSIDE,
         S.INSIDE if inside == "A" else S.OUTSIDE,
     )
-    found = pair.least(senses, evaluations)
+    # two tolerances more, so that what lies beyond is proven to
+    horizon = np.inf if within is None else within + 2.0 * PROOF_TOLERANCE * pair.size
+    found = pair.least(senses, evaluations, horizon)
     if found.met:
         return _meeting(pair, found, senses)
+    if within is not None and found.upper >= horizon and not inside:
+        return _beyond(pair, found)
     return _apart(pair, found, senses, inside, evaluations)
 
 
@@ -134,8 +150,42 @@ def _meeting(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> SolidPr
             if within_box(other, spot):
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
-    status = Status.OVERLAPPING if overlap else Status.TOUCHING
-    return _answer(pair, found, [place], status, Smoothness.UNDEFINED, None, overlap, "")
+    if overlap:
+        return _answer(pair, found, [place], Status.OVERLAPPING, UNDEFINED, None, overlap, "")
+    parted = _parted(pair, place, found.tolerance)
+    status = Status.TOUCHING if parted < np.inf else Status.WITHIN
+    met = replace(found, lower=-parted)
+    return _answer(pair, met, [place], status, UNDEFINED, None, None, "")
+
+
+def _parted(pair: PlacedPair, place: Place, tolerance: float) -> float:
+    """A length by which moving B along the normal is proven to part the solids; inf where that is
+    not proven of `PARTED` tolerances."""
+    way = PARTED * tolerance
+    moved = Pose(pair.rb, pair.pb + way * place.normal)
+    beside = PlacedPair(pair.a, pair.b, Pose(pair.ra, pair.pa), moved)
+    if _inside(beside, "A") or _inside(beside, "B"):
+        return float(np.inf)
+    found = beside.least((S.OUTSIDE, S.OUTSIDE), BUDGET)
+    return way if not found.met and found.lower > 0.0 else float(np.inf)
+
+
+def _beyond(pair: PlacedPair, found: Found) -> SolidProximity:
+    """Solids beyond the horizon: only a bound is known."""
+    unseen: Array = np.full(3, np.nan)
+    boxes, steps, nodes, leaves, cuts = found.counts
+    return SolidProximity(
+        status=Status.FAR, distance=np.inf, lower_bound=found.lower - pair.a.slack - pair.b.slack,
+        upper_bound=np.inf, slack=pair.a.slack + pair.b.slack, point_a=unseen, point_b=unseen,
+        normal=unseen, feature_a=NO_FEATURE, feature_b=NO_FEATURE, parameters_a=(),
+        parameters_b=(), minima=(), continuum=None, overlap=None, inside="",
+        gradient_rows=np.full(12, np.nan), smoothness=UNDEFINED,
+        counts=SolidCounts(boxes + 2 * steps, nodes, leaves, boxes, cuts),
+        poses=(
+            np.concatenate([pair.ra.ravel(), pair.pa]),
+            np.concatenate([pair.rb.ravel(), pair.pb]),
+        ),
+    )  # fmt: skip
 
 
 def _answer(
@@ -156,11 +206,12 @@ def _answer(
     minima = tuple(pair.nearest_pair(p, lower) for p in places)
     first = minima[0]
     boxes, steps, nodes, leaves, cuts = found.counts
+    slack = pair.a.slack + pair.b.slack
     undefined = smoothness is Smoothness.UNDEFINED
     gradient = np.zeros(12) if undefined else pair.gradient(place)
     return SolidProximity(
-        status=status, distance=distance, lower_bound=lower, upper_bound=upper,
-        slack=pair.a.slack + pair.b.slack, point_a=first.point_a, point_b=first.point_b,
+        status=status, distance=distance, lower_bound=lower - slack, upper_bound=upper + slack,
+        slack=slack, point_a=first.point_a, point_b=first.point_b,
         normal=first.normal, feature_a=first.feature_a, feature_b=first.feature_b,
         parameters_a=first.parameters_a, parameters_b=first.parameters_b, minima=minima,
         continuum=continuum, overlap=overlap, inside=inside, gradient_rows=gradient,

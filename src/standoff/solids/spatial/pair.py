@@ -51,10 +51,10 @@ class PlacedPair:
     def in_b(self, points: Array) -> Array:
         return np.asarray((points - self.pb) @ self.rb)
 
-    def least(self, senses: tuple[int, int], budget: int) -> Found:
+    def least(self, senses: tuple[int, int], budget: int, below: float = np.inf) -> Found:
         """The search between both boundaries, each seen from outside or inside."""
         return least_distance(
-            self.a.packed, self.b.packed, self.relative, senses, self.size, budget
+            self.a.packed, self.b.packed, self.relative, senses, self.size, budget, below
         )
 
     def place(self, row: Array, senses: tuple[int, int]) -> Place:

@@ -14,7 +14,10 @@ from standoff.kernels.solids.torus_potential import CENTRE_OF
 from standoff.solids.spatial.minimum import EITHER, IDENTITY, Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid import Solid
-from standoff.solids.spatial.tolerances import SAME_SPOT
+from standoff.solids.spatial.tolerances import ALONG_NORMAL, BESIDE_EDGE, SAME_SPOT
+
+MOST_PLACES = 16
+"""Nearest places that are asked for the side of a point, before a ray is."""
 
 
 class PointDistances(NamedTuple):
@@ -92,20 +95,15 @@ def signed_distances(solid: Solid, points: Array) -> PointDistances:
         at = leaf_jet_of(solid.packed, leaf, u, v)[0]
         away = point - at
         length = float(np.linalg.norm(away))
-        direction = outside_direction(solid, leaf, float(u), float(v))
         on_it = found.met or length <= found.tolerance
-        if on_it:
-            sign = 1.0
-        elif direction is None:
-            sign = -1.0 if solid.boundary.contains(point[None])[0] else 1.0
-        else:
-            sign = -1.0 if direction @ away < 0.0 else 1.0
+        sign = 1.0 if on_it else _side(solid, found, point)
         least = 0.0 if on_it else found.lower
         distance[k] = sign * found.upper
         bounds = sign * np.array([least, found.upper])
         low[k], high[k] = bounds.min(), bounds.max()
         if on_it:
             low[k], high[k] = -found.tolerance, max(found.upper, found.tolerance)
+            direction = outside_direction(solid, leaf, float(u), float(v))
             gradient[k] = 0.0 if direction is None else direction
         else:
             gradient[k] = sign * away / length
@@ -113,6 +111,26 @@ def signed_distances(solid: Solid, points: Array) -> PointDistances:
         converged[k] = high[k] - low[k] <= 3.0 * found.tolerance
         smooth[k] = _alone(solid, found) and not on_it
     return PointDistances(distance, low, high, gradient, nearest, converged, smooth)
+
+
+def _side(solid: Solid, found: Found, point: Array) -> float:
+    """+1 for a point outside, -1 inside, by the nearest places of the boundary.
+
+    A nearest place on a side of a face may be found as one of that face, whose plane may hold the
+    point: so only a place decides from which the point is along the normal, or clearly on one side
+    of an edge's or a vertex's normals. A ray decides where none does.
+    """
+    for row in (found.best, *found.minima[:MOST_PLACES]):
+        leaf, u, v = int(row[2]), float(row[5]), float(row[6])
+        direction = outside_direction(solid, leaf, u, v)
+        if direction is None:
+            continue
+        away = point - leaf_jet_of(solid.packed, leaf, u, v)[0]
+        size = float(np.linalg.norm(away)) * float(np.linalg.norm(direction))
+        along = float(direction @ away) / size if size > 0.0 else 0.0
+        if abs(along) >= (ALONG_NORMAL if solid.leaves[leaf].dim == 2 else BESIDE_EDGE):
+            return 1.0 if along > 0.0 else -1.0
+    return -1.0 if solid.boundary.contains(point[None])[0] else 1.0
 
 
 def _alone(solid: Solid, found: Found) -> bool:

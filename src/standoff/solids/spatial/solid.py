@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+from standoff.motion import PoseLike
+from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
@@ -171,6 +173,27 @@ class Solid:
         names = ("face", "edge", "vertex")
         return Feature(names[2 - part.dim], part.feature - first[2 - part.dim])
 
+    def cold_query(
+        self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
+    ) -> SolidProximity:
+        """The distance of two solids, or of one and a `Body`; see ``so.solids.distance``.
+
+        Parameters
+        ----------
+        a, b : Solid, Boundary or Body
+            One of them this one.
+        pose_a, pose_b : Pose or what ``Pose.of`` reads
+        within : float or None
+            Horizon, length.
+
+        Returns
+        -------
+        SolidProximity
+        """
+        from standoff.solids.spatial.distance import spatial_distance
+
+        return spatial_distance(a, b, pose_a, pose_b, within=within)
+
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside the solid or on its boundary.
 
@@ -228,5 +251,11 @@ def as_solid(given: Any) -> Solid:
     if isinstance(given, Solid):
         return given
     if isinstance(given, Boundary | Body):
-        return Solid(given)
+        return _made_once(given)
     raise StandoffError(f"{given!r} is no Solid, Boundary or Body.", "solid", given)
+
+
+@lru_cache(maxsize=64)
+def _made_once(boundary: Boundary) -> Solid:
+    """A body is asked again and again, and its leaves take a second."""
+    return Solid(boundary)

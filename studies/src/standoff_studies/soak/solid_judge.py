@@ -136,6 +136,14 @@ def truths(
     poses = (poses_b, poses_a) if turned else (poses_a, poses_b)
     turns, shifts = relative_poses(*poses)
     bounds = own.sampled.least(other.part.truth, turns, shifts)
+    if own.part.name not in HEAVY:
+        # a valley that is narrow and slanted on one of them lies along an edge of the other
+        back = np.swapaxes(turns, 1, 2)
+        again = other.sampled.least(own.part.truth, back, -np.einsum("nij,nj->ni", back, shifts))
+        bounds = bounds._replace(
+            lower=np.maximum(bounds.lower, np.minimum(again.lower, bounds.upper)),
+            upper=np.minimum(bounds.upper, again.upper),
+        )
     found = []
     for k, (pose_a, pose_b) in enumerate(zip(poses_a, poses_b, strict=True)):
         true = Bounds(*(column[k] for column in bounds))

@@ -3,7 +3,8 @@
 Pairs of solids that need not be convex, at gaps of 1 to 1e-6, aligned and nearly so, in overlap and
 inside one another. Every answer is judged by `solid_judge`: no bound may exclude what an exhaustive
 search finds on sampled boundaries, no status may be wrong, a common ball is inside both solids.
-With --points, signed distances of points are judged too.
+With --points, signed distances of points are judged too. With --occ, so many poses are compared
+with OpenCASCADE's ``BRepExtrema_DistShapeShape``, which `cadquery-ocp-novtk` has.
 
 Every half minute a line says what was judged so far: it stands where a run is cut off. A fault is
 told with the poses that repeat it, and the exit code is then 1.
@@ -19,7 +20,7 @@ import numpy as np
 from standoff.cli.terminal import tell
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.spatial.solid import Solid
-from standoff_studies.soak import solid_judge, solid_points
+from standoff_studies.soak import solid_judge, solid_occ, solid_points
 from standoff_studies.soak.solid_judge import Verdict
 from standoff_studies.soak.solid_parts import MAKERS
 from standoff_studies.soak.solid_poses import Known, draw_poses, known, pairs_of
@@ -75,6 +76,21 @@ def run(stock: Stock, pairs: list[tuple[str, str]], poses: int, seed: int) -> Ve
     return verdict
 
 
+def beside_occ(
+    stock: Stock, pairs: list[tuple[str, str]], poses: int, seed: int
+) -> solid_occ.Comparison:
+    """So many poses at least that are apart, of all pairs in turn."""
+    found, number = solid_occ.Comparison(), 0
+    while found.poses < poses:
+        a, b = pairs[number % len(pairs)]
+        rng = np.random.default_rng([seed, number, 2])
+        (one, first), (two, second) = stock.get(a), stock.get(b)
+        drawn = draw_poses(one, two, BLOCK, rng)
+        found = found.plus(solid_occ.compared(one, two, (first, second), drawn, spatial_distance))
+        number += 1
+    return found
+
+
 def table(verdict: Verdict) -> str:
     """Statuses by gap, in parts of the poses at it."""
     bins = [*(name for name, _ in solid_judge.BINS), "touching", "inside", "overlap"]
@@ -93,6 +109,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--poses", type=int, default=100_000)
     parser.add_argument("--points", type=int, default=0)
+    parser.add_argument("--occ", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--parts", nargs="+", default=list(MAKERS), choices=list(MAKERS))
     given = parser.parse_args()
@@ -108,6 +125,10 @@ def main() -> int:
             found = solid_points.judged(*stock.get(name), count, given.seed)
             tell(f"{name}: {found}")
             sound &= found.sound
+    if given.occ:
+        compare = beside_occ(stock, pairs_of(solid_occ.PARTS), given.occ, given.seed)
+        tell(str(compare))
+        sound &= not compare.library
     return 0 if sound else 1
 
 
