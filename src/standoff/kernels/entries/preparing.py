@@ -25,6 +25,7 @@ MODULES = (
     "standoff.kernels.entries.world",
     "standoff.kernels.entries.world_answers",
     "standoff.kernels.entries.planar_solids",
+    "standoff.kernels.entries.solids",
 )
 """The modules that have entries."""
 

@@ -15,6 +15,7 @@ from standoff.kernels.body.features import (
 from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.quadratic_max import line_max, quadratic_max
 from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_likeness import differences, to_axis, to_own, turning
 from standoff.kernels.solids.spatial_pieces import (
@@ -42,33 +43,6 @@ MOST_WAITING = 60
 # Parts of one trimming curve that are tested along it.
 MOST_PARTS = 200
 PARTS_WAITING = 40
-
-
-@kernel
-def line_max(g, c, lo, hi):
-    """The greatest g e + c e² / 2 for lo <= e <= hi."""
-    best = max(g * lo + 0.5 * c * lo * lo, g * hi + 0.5 * c * hi * hi)
-    if c < 0.0 and lo < -g / c < hi:
-        best = max(best, -0.5 * g * g / c)
-    return best
-
-
-@kernel
-def quadratic_max(g, H, e):
-    """The greatest g . e + eᵀ H e / 2 over a rectangle; H = (uu, uv, vv), e = (u0, u1, v0, v1)."""
-    gu, gv = g
-    a, b, c = H
-    best = -inf
-    for k in range(2):
-        eu, ev = e[k], e[2 + k]
-        best = max(best, gu * eu + 0.5 * a * eu * eu + line_max(gv + b * eu, c, e[2], e[3]))
-        best = max(best, gv * ev + 0.5 * c * ev * ev + line_max(gu + b * ev, a, e[0], e[1]))
-    det = a * c - b * b
-    if a < 0.0 and det > 0.0:
-        eu, ev = (b * gv - c * gu) / det, (b * gu - a * gv) / det
-        if e[0] < eu < e[1] and e[2] < ev < e[3]:
-            best = max(best, 0.5 * (gu * eu + gv * ev))
-    return best
 
 
 @kernel

@@ -6,9 +6,7 @@ from math import acos, asin, inf, pi
 from standoff.kernels.algebra.vectors import add, dot, norm, rotate, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
-
-# Radians: added to cones for the rounding of angles.
-CONE_SPARE = 1e-9
+from standoff.kernels.solids.spatial_tolerances import CONE_SPARE
 
 
 @kernel

@@ -22,6 +22,12 @@ from standoff.kernels.solids.spatial_pieces import (
     reach_of,
     trim_state,
 )
+from standoff.kernels.solids.spatial_tolerances import (
+    LEAST_SPAN,
+    SHORTEST_PART,
+    SMOOTH_SPARE,
+    SURE_NORMAL,
+)
 from standoff.kernels.solids.torus_potential import potential_jet
 
 # What `best` holds: the least distance, how many minima, its leaves and parameters, the least bound
@@ -37,12 +43,8 @@ MOST_MINIMA = 256
 # Pairs of boxes that wait, of 9 numbers each.
 PAIR_REALS = 9
 MOST_PAIRS = 200
-# Radians: faces that join smoothly may differ in their normals by this.
-SMOOTH_SPARE = 2e-7
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
 MARGINS = (1.0, 0.3, 3.0)
-# Of the size: parts shorter than this are not cut again.
-SHORTEST = 1e-9
 
 
 @kernel
@@ -99,7 +101,7 @@ def by_witness(goal, a, b, at, best, counts):
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
     size = best[SIZE]
-    n = direction(a.side, wa, ja, b.side, wb, jb, 1e-9 * size)
+    n = direction(a.side, wa, ja, b.side, wb, jb, SURE_NORMAL * size)
     if norm(n) < 0.5:
         return False
     x, y = ja[0], jb[0]
@@ -109,7 +111,7 @@ def by_witness(goal, a, b, at, best, counts):
         return True
     span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
     span = max(span, reach_of(b.side, b.leaf, b.box.u1 - b.box.u0, b.box.v1 - b.box.v0))
-    span = max(min(span, size), 1e-6 * size)
+    span = max(min(span, size), LEAST_SPAN * size)
     frame = across(n)
     held_a = held_along(a, ja, n, q[0], q[1]) if here else (0.0, 0.0)
     held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
@@ -263,7 +265,7 @@ def put_halves(a, b, best, work, count, low):
     """Cut the longer part in two; the new count of pairs. One too short to cut stays open."""
     au, av = widths(a.side, a.leaf, a.box)
     bu, bv = widths(b.side, b.leaf, b.box)
-    if max(max(au, av), max(bu, bv)) <= SHORTEST * best[SIZE]:
+    if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
         best[OPEN] = min(best[OPEN], low)
         return count
     if max(au, av) >= max(bu, bv):

@@ -14,6 +14,7 @@ from standoff.kernels.body.features import edge_record
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, leaf_reals
+from standoff.kernels.solids.spatial_tolerances import SAME_NUMBER
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
     CENTRE_OF,
@@ -23,8 +24,6 @@ from standoff.kernels.solids.torus_potential import (
     potential_jet,
 )
 
-# Relative: radii and angles that differ by no more than their rounding are one.
-SAME_NUMBER = 1e-15
 # An angle below a quarter turn is at most this times its sine.
 OVER_SINE = 1.5708
 

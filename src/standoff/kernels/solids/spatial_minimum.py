@@ -13,11 +13,19 @@ from standoff.kernels.solids.spatial_pieces import (
     leaf_jet,
     outward_normal,
 )
+from standoff.kernels.solids.spatial_tolerances import (
+    FIRST_DAMPING,
+    LEAST_GAIN,
+    LEAST_MOVE,
+    LEAST_PIVOT,
+    NO_DAMPING,
+    PARALLEL_TANGENTS,
+)
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
 
 MOST_STEPS = 40
 # Where a feature has no extent in a direction, any curvature up to this over its span serves.
-SHARP = 50.0
+SHARP_BEND = 50.0
 
 
 @kernel
@@ -49,7 +57,7 @@ def solved(H, g, free, damping, scales, out):
             for k in range(j):
                 s -= m[4 * i + k] * m[4 * j + k]
             if i == j:
-                if s <= 1e-14 * scales[i] and free[i] > 0.0:
+                if s <= LEAST_PIVOT * scales[i] and free[i] > 0.0:
                     return False
                 m[5 * i] = sqrt(s)
             else:
@@ -111,16 +119,16 @@ def nearest(a, leaf_a, box_a, b, leaf_b, box_b, start, counts):
                 if after < energy:
                     taken = True
                     break
-                if moved * moved <= 1e-30 * (energy + moved):
+                if moved * moved <= LEAST_MOVE * (energy + moved):
                     break
-            damping = max(10.0 * damping, 1e-4)
+            damping = max(10.0 * damping, FIRST_DAMPING)
         if not taken:
             break
-        small = energy - after <= 1e-17 * energy
+        small = energy - after <= LEAST_GAIN * energy
         for i in range(4):
             q[i] = trial[i]
         ja, jb, energy = ka, kb, after
-        damping = 0.1 * damping if damping > 1e-8 else 0.0
+        damping = 0.1 * damping if damping > NO_DAMPING else 0.0
         if small or energy == 0.0:
             break
     return (q[0], q[1], q[2], q[3]), sqrt(2.0 * energy)
@@ -162,7 +170,7 @@ def shape(side, leaf, jet, toward, frame, held, span):
     """
     e1, e2 = frame
     dim = side.own[leaf_ints(side, leaf) + S.DIM]
-    sharp = SHARP / span
+    sharp = SHARP_BEND / span
     if dim == 0:
         return sharp, 0.0, sharp
     a, c = dot(jet[1], e1), dot(jet[1], e2)
@@ -175,7 +183,7 @@ def shape(side, leaf, jet, toward, frame, held, span):
         return k * a2 + sharp * c2, (k - sharp) * ac, k * c2 + sharp * a2
     b, d = dot(jet[2], e1), dot(jet[2], e2)
     det = a * d - b * c
-    if abs(det) <= 1e-9 * (a * a + b * b + c * c + d * d):
+    if abs(det) <= PARALLEL_TANGENTS * (a * a + b * b + c * c + d * d):
         return sharp, 0.0, sharp
     uu, uv, vv = (
         -dot(toward, jet[3]) + held[0],

@@ -15,6 +15,7 @@ from standoff.kernels.body.features import (
 from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_tolerances import PARAMETER_SPARE
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
 
 ZERO = (0.0, 0.0, 0.0)
@@ -115,8 +116,8 @@ def part_box(side, piece, ta, tb):
     ua, va, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, ta)
     ub, vb, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, tb)
     shift = m[o + S.P_SHIFT]
-    spare_u = bu * h2 + 4e-16 * (abs(ua) + abs(ub) + abs(shift))
-    spare_v = bv * h2 + 4e-16 * (abs(va) + abs(vb))
+    spare_u = bu * h2 + PARAMETER_SPARE * (abs(ua) + abs(ub) + abs(shift))
+    spare_v = bv * h2 + PARAMETER_SPARE * (abs(va) + abs(vb))
     return S.Box(
         max(box.u0, min(ua, ub) + shift - spare_u),
         min(box.u1, max(ua, ub) + shift + spare_u),

@@ -19,7 +19,7 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.solids.spatial.tolerances import BOUND_INFLATION
+from standoff.solids.spatial.tolerances import DERIVATIVE_INFLATION
 
 # Columns: first (2), second (3), third (4) derivatives, spread of the second (3).
 COLUMNS = 12
@@ -40,7 +40,7 @@ def surface_derivatives(surface: Surface, rows: Array) -> Array:
         L.REVOLUTION: _revolution,
         L.EXTRUSION: _extrusion,
     }.get(surface.kind, _any)
-    return made(surface, rows) * (1.0 + BOUND_INFLATION)
+    return made(surface, rows) * (1.0 + DERIVATIVE_INFLATION)
 
 
 def _norms(surface: Surface) -> tuple[float, float, float]:
@@ -182,7 +182,7 @@ def curve_derivatives(curve: Curve, pieces: Sequence[tuple[float, float]]) -> Ar
             part = jets[:, k + 1]
             found[:, k] = length(part[0], part[1], part[2]).hi
         found[:, 3] = np.linalg.norm(jets.hi[:, 2] - jets.lo[:, 2], axis=0)
-    return np.where(np.isfinite(found), found, np.inf) * (1.0 + BOUND_INFLATION)
+    return np.where(np.isfinite(found), found, np.inf) * (1.0 + DERIVATIVE_INFLATION)
 
 
 def _on_surface(curve: SurfaceCurve, first: float, last: float) -> list[float]:

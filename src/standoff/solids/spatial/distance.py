@@ -8,7 +8,6 @@ from typing import Any, Literal
 import numpy as np
 
 from standoff.bodies.features import NO_FEATURE
-from standoff.bodies.report import BoundaryReport
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
@@ -125,7 +124,7 @@ def _apart(
     proven = found.upper - found.lower <= PROVEN * found.tolerance
     if not proven:
         status = Status.DEADLINE if found.counts[0] > evaluations else Status.WITHIN
-    elif inside or _in_cavity(pair, places[0]):
+    elif inside:
         status = Status.CONTAINED
     else:
         status = Status.CONTINUUM if continuum else Status.CONVERGED
@@ -137,25 +136,6 @@ def _apart(
     if not proven and found.lower <= 0.0:
         smoothness = Smoothness.UNDEFINED
     return _answer(pair, found, places, status, smoothness, continuum, None, inside)
-
-
-def _in_cavity(pair: PlacedPair, place: Place) -> bool:
-    """Is the nearest place on a cavity's shell, so that one solid lies in the other's cavity?"""
-    for solid, leaf in ((pair.a, int(place.row[1])), (pair.b, int(place.row[2]))):
-        report = solid.report
-        if not isinstance(report, BoundaryReport) or not report.cavities:
-            continue
-        part = solid.leaves[leaf]
-        faces = {f for k in report.cavities for f in report.shells[k]}
-        if part.dim == 2 and part.feature in faces:
-            return True
-        if part.dim == 1:
-            edge = part.feature - solid.boundary.n_faces
-            owners = [k for k, f in enumerate(solid.boundary.face_parts)
-                      if any(j == edge for j, _ in f.loop)]  # fmt: skip
-            if any(k in faces for k in owners):
-                return True
-    return False
 
 
 def _meeting(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> SolidProximity:

@@ -20,7 +20,15 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of, round_arc
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
-from standoff.solids.spatial.tolerances import BOUND_INFLATION, COLLAPSED_FRAME, SMOOTH_JOIN
+from standoff.solids.spatial.tolerances import (
+    BOX_SPARE,
+    COLLAPSED_FRAME,
+    DERIVATIVE_INFLATION,
+    LEAST_LENGTH,
+    NO_AXIS,
+    SMOOTH_JOIN,
+    SPOT_SPARE,
+)
 from standoff.solids.spatial.trims import Piece, edge_ranges, pieces_of
 
 # Half angle of a leaf's cone of normals, radians.
@@ -170,7 +178,7 @@ def frame_along(first: Array, second: Array) -> Array:
     scale = np.linalg.norm(first)
     a = first / scale if scale > 0.0 else np.array([1.0, 0.0, 0.0])
     b = second - (second @ a) * a
-    if np.linalg.norm(b) <= COLLAPSED_FRAME * max(float(np.linalg.norm(second)), 1e-300):
+    if np.linalg.norm(b) <= COLLAPSED_FRAME * max(float(np.linalg.norm(second)), LEAST_LENGTH):
         b = np.eye(3)[int(np.abs(a).argmin())]
         b = b - (b @ a) * a
     b = b / np.linalg.norm(b)
@@ -180,7 +188,7 @@ def frame_along(first: Array, second: Array) -> Array:
 def box_of(axes: Array, low: Array, high: Array) -> tuple[Array, Array, Array]:
     """(centre, axes, half) of a box from extents along its axes, grown for rounding."""
     reach = np.abs([low, high]).max()
-    half = 0.5 * (high - low) + 8.0 * 2.3e-16 * reach
+    half = 0.5 * (high - low) + BOX_SPARE * reach
     return axes.T @ (0.5 * (low + high)), axes, half
 
 
@@ -231,7 +239,7 @@ def edge_leaves(
         axes = frame_along(xt, xtt)
         second = d[1] * h * h / 2.0
         half = np.abs(axes @ xt) * h + second
-        half = half * (1.0 + BOUND_INFLATION) + 1e-15 * float(np.abs(x).max())
+        half = half * (1.0 + DERIVATIVE_INFLATION) + SPOT_SPARE * float(np.abs(x).max())
         cones = np.full(8, -1.0)
         cones[:3], cones[4:7] = cone[0], -cone[0]
         cones[3] = cone[1] if senses & S.OUTSIDE else -1.0
@@ -293,7 +301,7 @@ def _cone_round(cones: list[Cone]) -> Cone:
         return nothing
     axis = np.sum([axis for axis, _ in cones], axis=0)
     scale = np.linalg.norm(axis)
-    if scale <= 1e-3:
+    if scale <= NO_AXIS:
         return nothing
     axis = axis / scale
     wide = max(float(between(axis, other)) + angle for other, angle in cones) + SMOOTH_JOIN
@@ -307,7 +315,7 @@ def vertex_leaf(boundary: PackedParts, number: int) -> Leaf:
     reals = _leaf_reals(np.zeros(4), np.zeros(12), cones, np.zeros(9))
     feature = boundary.n_faces + boundary.n_edges + number
     senses = S.OUTSIDE | S.INSIDE
-    half = np.full(3, 1e-15 * float(np.abs(x).max()))
+    half = np.full(3, SPOT_SPARE * float(np.abs(x).max()))
     return Leaf(0, feature, -1, False, senses, [], -1, reals, x, np.eye(3), half)
 
 

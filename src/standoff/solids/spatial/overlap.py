@@ -9,14 +9,11 @@ import numpy as np
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.pair import PlacedPair
-from standoff.solids.spatial.tolerances import STILL
+from standoff.solids.spatial.tolerances import LAST_CLIMB, LEADS_NOWHERE, LOOKS
 
-# Parts of the size: the first step of the ascent, and the last.
-FIRST_STEP, LAST_STEP = 0.1, 1e-5
+# Part of the size: the first step of the ascent.
+FIRST_STEP = 0.1
 MOST_STEPS = 60
-# Steps from a common point of both boundaries, parts of the size, among which one inside both is
-# sought where the ascent finds none.
-LOOKS = (0.03, 3e-3, 3e-4, 3e-5)
 WAYS = np.array([w for w in product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
 
 
@@ -53,13 +50,13 @@ def _climbed(pair: PlacedPair, start: Array, first: float) -> tuple[float, Array
     point, (da, db, ga, gb) = start, pair.depths(start)
     step = first * size
     for _ in range(MOST_STEPS):
-        if step < LAST_STEP * size:
+        if step < LAST_CLIMB * size:
             break
         worse, other = (ga, gb) if da <= db else (gb, ga)
         ways = [worse, worse + other, worse - (worse @ other) * other]
         for way in ways:
             length = float(np.linalg.norm(way))
-            if length < STILL:
+            if length < LEADS_NOWHERE:
                 continue
             trial = point + step * way / length
             told = pair.depths(trial)

@@ -16,7 +16,7 @@ from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid import Solid
-from standoff.solids.spatial.tolerances import DIRECTED
+from standoff.solids.spatial.tolerances import HAS_DIRECTION
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class PlacedPair:
         y = leaf_jet_of(self.b.packed, leaf_b, row[5], row[6])[0] @ self.rb.T + self.pb
         away = y - x
         length = float(np.linalg.norm(away))
-        told = length > DIRECTED * self.size
+        told = length > HAS_DIRECTION * self.size
         normal = away / length if told else self._normal_at(row, senses)
         return Place(row, x, y, normal)
 

@@ -14,7 +14,7 @@ from standoff.kernels.solids.torus_potential import CENTRE_OF
 from standoff.solids.spatial.minimum import EITHER, IDENTITY, Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid import Solid
-from standoff.solids.spatial.tolerances import ALONG_NORMAL, BESIDE_EDGE
+from standoff.solids.spatial.tolerances import ALONG_NORMAL, BESIDE_EDGE, SAME_SPOT
 
 MOST_PLACES = 16
 """Nearest places that are asked for the side of a point, before a ray is."""
@@ -138,4 +138,4 @@ def _alone(solid: Solid, found: Found) -> bool:
     spots = np.array(
         [leaf_jet_of(solid.packed, int(r[2]), r[5], r[6])[0] for r in found.minima[:16]]
     )
-    return len(spots) < 2 or float(np.ptp(spots, axis=0).max()) <= 1e-5 * solid.size
+    return len(spots) < 2 or float(np.ptp(spots, axis=0).max()) <= SAME_SPOT * solid.size

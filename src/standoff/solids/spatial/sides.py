@@ -15,7 +15,7 @@ from standoff.kernels.entries.queries import (
 )
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid import Solid
-from standoff.solids.spatial.tolerances import OPPOSED
+from standoff.solids.spatial.tolerances import NO_SIDE, PIECE_END_SPARE
 
 
 def outside_direction(solid: Solid, leaf: int, u: float, v: float) -> Array | None:
@@ -45,7 +45,7 @@ def outside_direction(solid: Solid, leaf: int, u: float, v: float) -> Array | No
     total = np.zeros(3)
     for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1):
         total += np.array(coedge_conormal(ints, reals, int(ints[row + k]), along, u)[1])
-    return total if float(np.linalg.norm(total)) > OPPOSED else None
+    return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
 def _at_vertex(solid: Solid, vertex: int) -> Array | None:
@@ -65,7 +65,7 @@ def _at_vertex(solid: Solid, vertex: int) -> Array | None:
         a, b = out[0], into[0]
         angle = np.arctan2(float(n @ np.cross(a, b)), float(a @ b)) % (2.0 * np.pi)
         total += angle * n
-    return total if float(np.linalg.norm(total)) > OPPOSED else None
+    return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
 def _corner(solid: Solid, chart: int, vertex: int) -> tuple[list[Array], list[Array], Array | None]:
@@ -91,7 +91,10 @@ def _corner(solid: Solid, chart: int, vertex: int) -> tuple[list[Array], list[Ar
         o = int(ints[at + L.COEDGE_REALS])
         for end, sign in ((part.first, 1.0), (part.last, -1.0)):
             t = part.curve.first if sign > 0.0 else part.curve.last
-            if end != vertex or not reals[o] - 1e-12 <= t <= reals[o + 1] + 1e-12:
+            if (
+                end != vertex
+                or not reals[o] - PIECE_END_SPARE <= t <= reals[o + 1] + PIECE_END_SPARE
+            ):
                 continue
             tangent = np.array(edge_jet(ints, reals, boundary.n_faces + edge, t)[1])
             size = float(np.linalg.norm(tangent))

@@ -21,6 +21,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.leaves import Leaf
+from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
 from standoff.wording import printable
 
@@ -92,7 +93,7 @@ class Solid:
         """Volume and area of a `Body`, which its report does not hold."""
         from standoff.bodies.enclosed import enclosed_by
 
-        return enclosed_by(self.boundary, range(self.boundary.n_faces), 1e-9)
+        return enclosed_by(self.boundary, range(self.boundary.n_faces), MASS_TOLERANCE)
 
     @staticmethod
     def from_brep(

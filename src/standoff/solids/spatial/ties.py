@@ -12,10 +12,10 @@ from standoff.solids.answer import Continuum
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.tolerances import (
+    BENDS_LESS,
     CONTINUUM_LENGTH,
     SAME_BASIN,
-    SAME_PAIR,
-    STRAIGHT,
+    SAME_NEAREST,
     VALLEY,
 )
 
@@ -44,7 +44,7 @@ def _same(place: Place, other: Place, size: float) -> bool:
         float(np.linalg.norm(place.point_b - other.point_b)),
     )
     farther = place.distance - other.distance > VALLEY * size
-    return away <= (SAME_BASIN if farther else SAME_PAIR) * size
+    return away <= (SAME_BASIN if farther else SAME_NEAREST) * size
 
 
 def continuum_of(
@@ -115,7 +115,7 @@ def _described(
     if len(sizes) > 1 and sizes[1] > WIDE * sizes[0]:
         return Continuum("surface", _corners(every, spots))
     straight = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)
-    if len(straight) < 2 or straight[1] <= STRAIGHT * straight[0]:
+    if len(straight) < 2 or straight[1] <= BENDS_LESS * straight[0]:
         return Continuum("line", _ends(every, spots))
     return Continuum("arc", () if _closed(spots) else _ends(every, spots))
 

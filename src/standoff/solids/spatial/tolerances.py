@@ -2,7 +2,7 @@
 
 from typing import Final
 
-BOUND_INFLATION: Final = 1e-12
+DERIVATIVE_INFLATION: Final = 1e-12
 """Relative: for the rounding of norms that bound derivatives, some tens of operations."""
 ROUND_KIND: Final = 1e-14
 """Relative: columns of a map that differ by less make a round cylinder, cone, sphere or torus; the
@@ -16,14 +16,14 @@ SMOOTH_JOIN: Final = 2e-7
 """Radians: faces that join smoothly may differ by this in their normals, twice SMOOTH_ANGLE."""
 CONTINUUM_LENGTH: Final = 1e-3
 """Of the sizes: nearest pairs spread less than this are one."""
-SAME_PAIR: Final = 1e-6
+SAME_NEAREST: Final = 1e-6
 """Of the sizes: pairs of points nearer to each other than this are one, found twice."""
-DIRECTED: Final = 1e-9
+HAS_DIRECTION: Final = 1e-9
 """Of the sizes: witness points nearer than this have no direction with seven digits; a face's
 normal takes its place."""
-OPPOSED: Final = 1e-3
+NO_SIDE: Final = 1e-3
 """Length of a sum of unit normals below which it tells no side."""
-STILL: Final = 1e-6
+LEADS_NOWHERE: Final = 1e-6
 """Length of a sum of unit gradients below which it leads nowhere."""
 COLLAPSED_FRAME: Final = 1e-6
 """Part of a vector across another below which it gives no direction."""
@@ -32,9 +32,34 @@ SAME_BASIN: Final = 1e-2
 a leaf."""
 VALLEY: Final = 1e-14
 """Of the sizes: pairs that differ by less in their distance are as near as each other."""
-STRAIGHT: Final = 3e-3
+BENDS_LESS: Final = 3e-3
 """Of its length: a continuum that bends less is a line; pairs within the tolerance of the distance
 lie to both sides of it."""
+LEAST_LENGTH: Final = 1e-300
+"""Length: keeps a quotient by a vanished vector finite."""
+BOX_SPARE: Final = 2e-15
+"""Of the coordinates: about eight roundings of a box's extents."""
+SPOT_SPARE: Final = 1e-15
+"""Of the coordinates: about four roundings of a point."""
+NO_AXIS: Final = 1e-3
+"""Length of a sum of unit vectors below which it gives no axis of a cone."""
+CONE_ROUNDINGS: Final = 1e-12
+"""Radians: added to a cone round several for the rounding of angles."""
+LAST_CLIMB: Final = 1e-5
+"""Of the size: the last step of the ascent to a ball inside both solids."""
+LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
+"""Of the size: steps from a common point of both boundaries among which one inside both is
+sought."""
+SAME_SPOT: Final = 1e-5
+"""Of the size: nearest points of one solid nearer to each other than this are one."""
+PIECE_END_SPARE: Final = 1e-12
+"""Radians or parameters: how far an edge's end may be from that of its trimming curve."""
+MASS_TOLERANCE: Final = 1e-9
+"""Relative: of the volume and the area that are compared with the maker's."""
+TURN_SPARE: Final = 1e-9
+"""Radians: how far past a chart's rectangle a trimming curve's image a turn away is kept."""
+BEND_SPARE: Final = 1e-12
+"""Relative: for the rounding of a trimming curve's second derivative."""
 ALONG_NORMAL: Final = 0.9
 """Cosine (-): a point is along a face's normal, so that the face says on which side it is. At a
 nearest place within a face it is 1."""

@@ -10,6 +10,7 @@ from standoff.geometry.patch_bounds import between
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.solids.spatial.leaves import Leaf, all_leaves, box_of
+from standoff.solids.spatial.tolerances import CONE_ROUNDINGS, NO_AXIS
 from standoff.solids.spatial.trims import Piece
 
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
@@ -115,8 +116,8 @@ def _cone_round(cones: list[Array]) -> list[float]:
         return [0.0, 0.0, 1.0, -1.0]
     axis = np.sum([c[:3] for c in known], axis=0)
     size = float(np.linalg.norm(axis))
-    if size <= 1e-3 or max(c[3] for c in known) >= np.pi:
+    if size <= NO_AXIS or max(c[3] for c in known) >= np.pi:
         return [0.0, 0.0, 1.0, np.pi]
     axis = axis / size
-    reach = max(float(between(axis, c[:3])) + float(c[3]) for c in known) + 1e-12
+    reach = max(float(between(axis, c[:3])) + float(c[3]) for c in known) + CONE_ROUNDINGS
     return [*axis, reach if reach < np.pi else np.pi]

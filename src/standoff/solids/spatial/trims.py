@@ -17,6 +17,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
 from standoff.solids.spatial.derivative_bounds import curve_derivatives
+from standoff.solids.spatial.tolerances import BEND_SPARE, TURN_SPARE
 
 # Parts of a trimming curve by its kind.
 PARTS = {L.LINE: 1, L.CONIC: 8, L.BEZIER: 16}
@@ -80,7 +81,7 @@ def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
     for turns in (-1, 0, 1):
         move = np.array([2.0 * np.pi * turns, 0.0])
         low, high = piece.low + move, piece.high + move
-        if turns and (high[0] < u0 - 1e-9 or low[0] > u1 + 1e-9):
+        if turns and (high[0] < u0 - TURN_SPARE or low[0] > u1 + TURN_SPARE):
             continue
         straight = None if piece.straight is None else piece.straight + move
         found.append(
@@ -134,7 +135,7 @@ def _placed(
     if kind == L.LINE:
         return low, high, np.zeros(2) if plain else unknown
     bend = np.hypot(matrix[:2, 0], matrix[:2, 1]) / abs(float(matrix[2, 2]))
-    return low, high, bend * (1.0 + 1e-12) if plain else unknown
+    return low, high, bend * (1.0 + BEND_SPARE) if plain else unknown
 
 
 def edge_ranges(curve: Curve, arc: float, longest: float) -> list[tuple[float, float]]:

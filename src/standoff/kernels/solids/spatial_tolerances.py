@@ -1,0 +1,30 @@
+"""Tolerances of the kernels of solids in space, each with its unit and reason."""
+
+from typing import Final
+
+CONE_SPARE: Final = 1e-9
+"""Radians: added to cones of normals for the rounding of their angles."""
+SMOOTH_SPARE: Final = 2e-7
+"""Radians: faces that join smoothly may differ by this in their normals, twice SMOOTH_ANGLE."""
+SHORTEST_PART: Final = 1e-9
+"""Of the sizes: parts of a leaf shorter than this are not cut again."""
+SURE_NORMAL: Final = 1e-9
+"""Of the sizes: points nearer than this length have no direction between them with seven digits."""
+LEAST_SPAN: Final = 1e-6
+"""Of the sizes: pieces count as at least this long where curvatures are chosen by their span."""
+SAME_NUMBER: Final = 1e-15
+"""Relative: radii and cosines that differ by no more than their rounding are one."""
+LEAST_PIVOT: Final = 1e-14
+"""Relative, of a squared tangent: a pivot of Newton's system below this is not positive."""
+LEAST_MOVE: Final = 1e-30
+"""Relative, of a square of the length: a step that moves points by less changes no digit."""
+FIRST_DAMPING: Final = 1e-4
+"""Relative, of squared tangents: what is added to Newton's system where it is not positive."""
+NO_DAMPING: Final = 1e-8
+"""Relative, of squared tangents: a damping below this is left out."""
+LEAST_GAIN: Final = 1e-17
+"""Relative: a step that lessens the square of the length by less is the last."""
+PARALLEL_TANGENTS: Final = 1e-9
+"""Relative: area of two tangents, over their squares, below which a face has no curvature."""
+PARAMETER_SPARE: Final = 4e-16
+"""Relative: two roundings of a parameter at the end of a part of a trimming curve."""
