@@ -22,7 +22,7 @@ from standoff.errors import StandoffError
 from standoff.solids import Arrangement
 from standoff.version import __version__
 
-AT_REST = Looked(0.0, 0.0, 1)
+NOTHING_MOVES = Looked(0.0, 0.0, 1)
 
 
 def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
@@ -52,7 +52,7 @@ def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
     if command.report.json:
         tell(json_text(_facts(file, report, written)))
     else:
-        print_report(subject, report, AT_REST, written, verbose=command.report.verbose)
+        print_report(subject, report, NOTHING_MOVES, written, verbose=command.report.verbose)
     holds = report.certified and not report.failures
     return ExitCode.DONE if holds else ExitCode.NOT_CERTIFIED
 
@@ -89,7 +89,7 @@ def _files(command: ClearanceCommand, file: AssemblyFile, report: Report) -> dic
     if page is not None:
         from standoff.clearance.page import page_of
 
-        text = page_of(subject, report, AT_REST)
+        text = page_of(subject, report, NOTHING_MOVES)
         files[page] = lambda target: target.write(text.encode())
     if plot is not None:
         from standoff.clearance.matrix import matrix_figure

@@ -10,7 +10,7 @@ from standoff.kernels.solids.planar_layout import (
     ARC,
     BEFORE,
     CENTRE,
-    FASTEST,
+    GREATEST_SPEED,
     FORM,
     FROM,
     UNTIL,
@@ -33,7 +33,7 @@ from standoff.kernels.solids.planar_tolerances import (
     SAFE_NORMAL,
     SAME_POINT,
     SINGULAR_STEP,
-    STATIONARY,
+    AT_OPTIMUM,
     STRAIGHT_LEVEL,
 )
 
@@ -179,7 +179,7 @@ def crossing(a, piece_a, b, piece_b, found):
         bx, by, vx, vy, _, _ = jet_at(b, leaf_b, s)
         ex, ey = bx - ax, by - ay
         area = ux * vy - uy * vx
-        if abs(area) <= STATIONARY * (abs(ux * vy) + abs(uy * vx)):
+        if abs(area) <= AT_OPTIMUM * (abs(ux * vy) + abs(uy * vx)):
             return found
         new_t = held(t + (ex * vy - ey * vx) / area, piece_a)
         new_s = held(s + (ex * uy - ey * ux) / area, piece_b)
@@ -230,7 +230,7 @@ def bend_toward(outline, piece, t, nx, ny, back):
     end = at_end(piece, t)
     if end != 0.0:
         slope = end * (nx * tx + ny * ty)
-        length = leaf_real(outline, leaf, FASTEST) * abs(piece.last - piece.first)
+        length = leaf_real(outline, leaf, GREATEST_SPEED) * abs(piece.last - piece.first)
         k += 2.0 * max(0.0, slope) / length
     spread = 1.0 + back * k
     return k / spread if spread > 0.0 else 1.0 / back
@@ -276,7 +276,7 @@ def slope_over(outline, leaf, t, nx, ny):
 def is_stationary(a, piece_a, b, piece_b, near, nx, ny):
     """Can no small step on the boundaries make a pair nearer, to first order?"""
     before, after = slope_over(a, leaf_of(a, piece_a.node), near.t, nx, ny)
-    if after > STATIONARY or before < -STATIONARY:
+    if after > AT_OPTIMUM or before < -AT_OPTIMUM:
         return False
     before, after = slope_over(b, leaf_of(b, piece_b.node), near.s, nx, ny)
-    return not (after < -STATIONARY or before > STATIONARY)
+    return not (after < -AT_OPTIMUM or before > AT_OPTIMUM)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 FROM = 0
 UNTIL = 1
 BEND = 2  # least upper bound known of |x_tt|
-FASTEST = 3  # the same of |x_t|
+GREATEST_SPEED = 3  # the same of |x_t|
 LEAST_K = 4  # range of the curvature, positive where the solid bulges
 GREATEST_K = 5
 PAD = 6  # how far computed points may lie from the curve [length]

@@ -13,7 +13,7 @@ from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids.planar_layout import (
     ARC,
     CENTRE,
-    FASTEST,
+    GREATEST_SPEED,
     FORM,
     GREATEST_K,
     LEAST_K,
@@ -119,7 +119,7 @@ def greatest_from(outline, leaf, piece, phi, sign, t):
     """The bound by Taylor's formula from the point at t."""
     x, y, tx, ty, _ = frame_at(outline, leaf, t)
     value = sign * value_at(phi, x, y)
-    fastest = leaf_real(outline, leaf, FASTEST)
+    fastest = leaf_real(outline, leaf, GREATEST_SPEED)
     back, ahead = fastest * abs(t - piece.first), fastest * abs(piece.last - t)
     reach = max(back, ahead)
     gx, gy, least_k, greatest_k, swing = phi.nx, phi.ny, 0.0, 0.0, 0.0

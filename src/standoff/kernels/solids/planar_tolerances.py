@@ -15,7 +15,7 @@ is rounded by 1e-16 / 1e-5: the curve's own normal is taken."""
 SAME_POINT: Final = 1e-15
 """Points nearer than this fraction of the extent are the same up to rounding."""
 
-STATIONARY: Final = 1e-6
+AT_OPTIMUM: Final = 1e-6
 """Sine of the angle by which a pair's direction may leave the normal cone of a local minimum:
 Newton's steps end at some 1e-8."""
 

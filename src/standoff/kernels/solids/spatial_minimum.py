@@ -18,7 +18,7 @@ from standoff.kernels.solids.spatial_tolerances import (
     LEAST_GAIN,
     LEAST_MOVE,
     LEAST_PIVOT,
-    NO_DAMPING,
+    UNDAMPED_STEP,
     PARALLEL_TANGENTS,
 )
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
@@ -128,7 +128,7 @@ def nearest(a, leaf_a, box_a, b, leaf_b, box_b, start, counts):
         for i in range(4):
             q[i] = trial[i]
         ja, jb, energy = ka, kb, after
-        damping = 0.1 * damping if damping > NO_DAMPING else 0.0
+        damping = 0.1 * damping if damping > UNDAMPED_STEP else 0.0
         if small or energy == 0.0:
             break
     return (q[0], q[1], q[2], q[3]), sqrt(2.0 * energy)

@@ -20,7 +20,7 @@ LEAST_MOVE: Final = 1e-30
 """Relative, of a square of the length: a step that moves points by less changes no digit."""
 FIRST_DAMPING: Final = 1e-4
 """Relative, of squared tangents: what is added to Newton's system where it is not positive."""
-NO_DAMPING: Final = 1e-8
+UNDAMPED_STEP: Final = 1e-8
 """Relative, of squared tangents: a damping below this is left out."""
 LEAST_GAIN: Final = 1e-17
 """Relative: a step that lessens the square of the length by less is the last."""

@@ -114,7 +114,7 @@ def leaves_of(curve: Curve, backward: bool, at_least: int) -> Leaves:
     n, form = len(cuts) - 1, form_of(curve)
     reals, ints = np.zeros((n, P.N_LEAF)), np.zeros((n, P.N_LEAF_INT), dtype=np.int64)
     reals[:, P.FROM], reals[:, P.UNTIL] = cuts[:-1], cuts[1:]
-    reals[:, P.BEND], reals[:, P.FASTEST] = ranges.bend, ranges.fastest
+    reals[:, P.BEND], reals[:, P.GREATEST_SPEED] = ranges.bend, ranges.fastest
     reals[:, P.LEAST_K], reals[:, P.GREATEST_K] = ranges.least, ranges.greatest
     if form == P.LINE:
         reals[:, [P.BEND, P.LEAST_K, P.GREATEST_K]] = 0.0

@@ -16,7 +16,7 @@ from standoff.solids.spatial.minimum import BUDGET, Found
 from standoff.solids.spatial.overlap import common_ball
 from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, within_box
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.solid import Solid, as_solid
+from standoff.solids.spatial.solid_model import SolidModel, as_model
 from standoff.solids.spatial.ties import continuum_of, distinct
 from standoff.solids.spatial.tolerances import PARTED, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
@@ -45,7 +45,7 @@ def spatial_distance(
 
     Parameters
     ----------
-    a, b : Solid, Boundary or Body
+    a, b : SolidModel, Boundary or Body
     pose_a, pose_b : poses in the world
         The identity by default.
     evaluations : int
@@ -63,7 +63,7 @@ def spatial_distance(
         Something that is no solid, or no pose.
     """
     placed = [Pose.identity() if pose is None else Pose.of(pose) for pose in (pose_a, pose_b)]
-    pair = PlacedPair(as_solid(a), as_solid(b), *placed)
+    pair = PlacedPair(as_model(a), as_model(b), *placed)
     inside: Literal["A", "B", ""] = ""
     if _inside(pair, "A"):
         inside = "A"
@@ -101,7 +101,7 @@ def _inside(pair: PlacedPair, which: str) -> bool:
     return False
 
 
-def _references(solid: Solid) -> Array:
+def _references(solid: SolidModel) -> Array:
     if solid.references is None:
         solid.references = reference_points(solid, TRIED)
     return solid.references

@@ -15,7 +15,7 @@ from standoff.solids.answer import NearestPair
 from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
-from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import HAS_DIRECTION
 
 
@@ -36,7 +36,7 @@ class Place:
 class PlacedPair:
     """Two solids at world poses."""
 
-    def __init__(self, a: Solid, b: Solid, pose_a: Pose, pose_b: Pose) -> None:
+    def __init__(self, a: SolidModel, b: SolidModel, pose_a: Pose, pose_b: Pose) -> None:
         self.a, self.b = a, b
         self.ra, self.pa = np.asarray(pose_a.rotation), np.asarray(pose_a.translation)
         self.rb, self.pb = np.asarray(pose_b.rotation), np.asarray(pose_b.translation)
@@ -126,12 +126,12 @@ class PlacedPair:
         return -float(found[0].upper_bound[0]), -float(found[1].upper_bound[0]), ga, gb
 
 
-def parameters(solid: Solid, leaf: int, values: Array) -> tuple[float, ...]:
+def parameters(solid: SolidModel, leaf: int, values: Array) -> tuple[float, ...]:
     """(u, v) of a face, (t,) of an edge, () of a vertex."""
     return tuple(float(x) for x in values[: solid.leaves[leaf].dim])
 
 
-def reference_points(solid: Solid, count: int) -> Array:
+def reference_points(solid: SolidModel, count: int) -> Array:
     """Points of a solid's boundary, own frame: vertices first, then middles of leaves."""
     vertices = np.asarray(solid.boundary.vertex_points).reshape(-1, 3)[:count]
     whole = (k for k, leaf in enumerate(solid.leaves) if leaf.dim and not leaf.cut)
@@ -142,12 +142,12 @@ def reference_points(solid: Solid, count: int) -> Array:
     return np.vstack([vertices, np.reshape(others, (-1, 3))])
 
 
-def middle_of(solid: Solid, leaf: int) -> tuple[float, float]:
+def middle_of(solid: SolidModel, leaf: int) -> tuple[float, float]:
     u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
     return 0.5 * (u0 + u1), 0.5 * (v0 + v1)
 
 
-def within_box(solid: Solid, point: Array) -> bool:
+def within_box(solid: SolidModel, point: Array) -> bool:
     """Is a point, own frame, in the box at the root of a solid's tree?"""
     o = int(solid.own[S.R_NODES])
     node = solid.numbers[o : o + S.NODE_REALS]

@@ -13,7 +13,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import CENTRE_OF
 from standoff.solids.spatial.minimum import EITHER, IDENTITY, Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.sides import outside_direction
-from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import ALONG_NORMAL, BESIDE_EDGE, SAME_SPOT
 
 MOST_PLACES = 16
@@ -76,14 +76,14 @@ def packed_point() -> tuple[NDArray[np.int64], Array, NDArray[np.int64], Array]:
 POINT = packed_point()
 
 
-def distance_to_boundary(solid: Solid, point: Array) -> Found:
+def distance_to_boundary(solid: SolidModel, point: Array) -> Found:
     """From one point, own frame, without a sign."""
     # the solid is seen from the point, which is the origin
     pose = np.concatenate([IDENTITY[:9], -point])
     return least_distance(POINT, solid.packed, pose, (EITHER, EITHER), solid.size)
 
 
-def signed_distances(solid: Solid, points: Array) -> PointDistances:
+def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
     """As `Solid.signed_distance`."""
     n = len(points)
     distance, low, high = np.zeros((3, n))
@@ -113,7 +113,7 @@ def signed_distances(solid: Solid, points: Array) -> PointDistances:
     return PointDistances(distance, low, high, gradient, nearest, converged, smooth)
 
 
-def _side(solid: Solid, found: Found, point: Array) -> float:
+def _side(solid: SolidModel, found: Found, point: Array) -> float:
     """+1 for a point outside, -1 inside, by the nearest places of the boundary.
 
     A nearest place on a side of a face may be found as one of that face, whose plane may hold the
@@ -133,7 +133,7 @@ def _side(solid: Solid, found: Found, point: Array) -> float:
     return -1.0 if solid.boundary.contains(point[None])[0] else 1.0
 
 
-def _alone(solid: Solid, found: Found) -> bool:
+def _alone(solid: SolidModel, found: Found) -> bool:
     """Are all nearest points that were found one point?"""
     spots = np.array(
         [leaf_jet_of(solid.packed, int(r[2]), r[5], r[6])[0] for r in found.minima[:16]]

@@ -14,11 +14,11 @@ from standoff.kernels.entries.queries import (
     edge_jet,
 )
 from standoff.solids.spatial.minimum import leaf_jet_of
-from standoff.solids.spatial.solid import Solid
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import NO_SIDE, PIECE_END_SPARE
 
 
-def outside_direction(solid: Solid, leaf: int, u: float, v: float) -> Array | None:
+def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array | None:
     """A vector d at a point y of the boundary, own frame: a point p whose nearest point of the
     boundary is y is outside where d . (p - y) > 0. None where it is not known.
 
@@ -48,7 +48,7 @@ def outside_direction(solid: Solid, leaf: int, u: float, v: float) -> Array | No
     return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
-def _at_vertex(solid: Solid, vertex: int) -> Array | None:
+def _at_vertex(solid: SolidModel, vertex: int) -> Array | None:
     """The sum of the faces' normals at a vertex, each weighted by the face's angle there."""
     boundary = solid.boundary
     total = np.zeros(3)
@@ -68,7 +68,9 @@ def _at_vertex(solid: Solid, vertex: int) -> Array | None:
     return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
-def _corner(solid: Solid, chart: int, vertex: int) -> tuple[list[Array], list[Array], Array | None]:
+def _corner(
+    solid: SolidModel, chart: int, vertex: int
+) -> tuple[list[Array], list[Array], Array | None]:
     """Directions from a vertex along the edges of a chart's loop that leave it and that arrive,
     counterclockwise seen from outside; and the outward normal there."""
     boundary = solid.boundary
