@@ -10,9 +10,9 @@ from standoff.kernels.solids.planar_layout import (
     ARC,
     BEFORE,
     CENTRE,
-    GREATEST_SPEED,
     FORM,
     FROM,
+    GREATEST_SPEED,
     UNTIL,
     Potential,
 )
@@ -27,13 +27,13 @@ from standoff.kernels.solids.planar_pieces import (
     turned_into,
 )
 from standoff.kernels.solids.planar_tolerances import (
+    AT_OPTIMUM,
     END_OF_PIECE,
     NEWTON_END,
     NEWTON_STEPS,
     SAFE_NORMAL,
     SAME_POINT,
     SINGULAR_STEP,
-    AT_OPTIMUM,
     STRAIGHT_LEVEL,
 )
 

@@ -6,9 +6,9 @@ from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids.planar_closest import nearest_points
 from standoff.kernels.solids.planar_layout import (
     AFTER,
-    FASTEST,
     FROM,
     GREATEST_K,
+    GREATEST_SPEED,
     LEAST_K,
     LEFT,
     N_NODE_INT,
@@ -45,7 +45,7 @@ def swing(outline, piece):
     """How far the tangent turns over a piece, radians."""
     leaf = leaf_of(outline, piece.node)
     bend = max(abs(leaf_real(outline, leaf, LEAST_K)), abs(leaf_real(outline, leaf, GREATEST_K)))
-    return bend * leaf_real(outline, leaf, FASTEST) * abs(piece.last - piece.first)
+    return bend * leaf_real(outline, leaf, GREATEST_SPEED) * abs(piece.last - piece.first)
 
 
 @kernel

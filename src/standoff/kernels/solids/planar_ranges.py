@@ -13,9 +13,9 @@ from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids.planar_layout import (
     ARC,
     CENTRE,
-    GREATEST_SPEED,
     FORM,
     GREATEST_K,
+    GREATEST_SPEED,
     LEAST_K,
     LINE,
 )

@@ -18,8 +18,8 @@ from standoff.kernels.solids.spatial_tolerances import (
     LEAST_GAIN,
     LEAST_MOVE,
     LEAST_PIVOT,
-    UNDAMPED_STEP,
     PARALLEL_TANGENTS,
+    UNDAMPED_STEP,
 )
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
 

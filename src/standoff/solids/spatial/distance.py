@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from standoff.bodies.features import NO_FEATURE
+from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
@@ -45,7 +46,7 @@ def spatial_distance(
 
     Parameters
     ----------
-    a, b : SolidModel, Boundary or Body
+    a, b : Solid, Boundary or Body
     pose_a, pose_b : poses in the world
         The identity by default.
     evaluations : int
@@ -78,6 +79,11 @@ def spatial_distance(
     found = pair.least(senses, evaluations, horizon)
     if found.met:
         return _meeting(pair, found, senses)
+    if np.isinf(found.upper):
+        raise StandoffError(
+            f"No pair of points of {pair.a!r} and {pair.b!r} was found: a boundary's normals may be "
+            "wrong; report the pair with its poses."
+        )
     if within is not None and found.upper >= horizon and not inside:
         return _beyond(pair, found)
     return _apart(pair, found, senses, inside, evaluations)
