@@ -247,6 +247,12 @@ def brick(wide: float, high: float) -> Part:
     return _swept("brick", square(0.5 * wide), high)
 
 
+def wedge() -> Part:
+    """A prism with a notch, of sharp angles: convex edges of 14 and reflex ones of 20 degrees."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.125], [0.9, 0.3], [0.0, 0.3]])
+    return _swept("wedge", corners, 0.5)
+
+
 def drum(radius: float, high: float) -> Part:
     """A convex cylinder."""
     return _turned("drum", *_chain((0, 0), (radius, 0), (radius, high), (0, high)))
@@ -265,6 +271,7 @@ MAKERS: dict[str, Callable[[], Part]] = {
     "elbow": lambda: elbow(0.5, 0.14, 0.22, 0.3),
     "egg": lambda: egg((0.5, 0.35, 0.25)),
     "brick": lambda: brick(0.3, 0.2),
+    "wedge": wedge,
     "drum": lambda: drum(0.24, 0.4),
 }
 """Of each name its part: sizes near 1, and small ones that have room in the others."""
