@@ -38,6 +38,7 @@ NOT_CALLED = {
     **dict.fromkeys(("build_library", "save_pair"), "write files; tests/c_interface tries them"),
     "FrameBuffer": "made from a tracker and a state, which need compiled kernels and check nothing",
     "Answers": "made by trackers",
+    "read_step": "needs OpenCASCADE; tests/cad tries it",
     "decomposition": "needs CoACD; tests/bodies/test_meshes.py tries it",
     **dict.fromkeys(("Decomposition", "Fit"), "made by decomposition"),
     "PatchBounds": "made by surfaces",

@@ -84,8 +84,10 @@ def test_what_users_look_for_comes_before_the_derivations() -> None:
     assert not late
 
 
-def test_it_says_in_one_line_that_step_is_not_read() -> None:
-    assert len(re.findall(r"^STEP files are not read yet.*\.$", README, re.MULTILINE)) == 1
+def test_it_says_in_one_line_that_step_is_read() -> None:
+    assert (
+        len(re.findall(r"^Parts and assemblies from CAD .* STEP.*\.$", README, re.MULTILINE)) == 1
+    )
 
 
 @pytest.mark.parametrize(("use", "why"), HALVES)

@@ -81,8 +81,8 @@ def spatial_distance(
         return _meeting(pair, found, senses)
     if np.isinf(found.upper):
         raise StandoffError(
-            f"No pair of points of {pair.a!r} and {pair.b!r} was found: a boundary's normals may be "
-            "wrong; report the pair with its poses."
+            f"No pair of points of {pair.a!r} and {pair.b!r} was found: the normals of a boundary "
+            "may be wrong; report the pair with its poses."
         )
     if within is not None and found.upper >= horizon and not inside:
         return _beyond(pair, found)

@@ -60,12 +60,12 @@ TURN_SPARE: Final = 1e-9
 """Radians: how far past a chart's rectangle a trimming curve's image a turn away is kept."""
 BEND_SPARE: Final = 1e-12
 """Relative: for the rounding of a trimming curve's second derivative."""
-ALONG_NORMAL: Final = 0.9
-"""Cosine (-): a point is along a face's normal, so that the face says on which side it is. At a
-nearest place within a face it is 1."""
+ALONG_NORMAL: Final = 1.0 - 1e-6
+"""Cosine: a point is along a face's normal, so that the face says on which side it is. At a place
+within a face it is 1. At a sharp edge one face's normal is nearly against the other's."""
 BESIDE_EDGE: Final = 1e-2
-"""Cosine (-) to an edge's or a vertex's sum of normals from which on they say on which side a point
+"""Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
 is; less is told by a ray."""
 PARTED: Final = 4.0
-"""Tolerances (-) by which a solid is moved along the normal to see whether it then is apart: if so,
-no more than that is shared, and they touch."""
+"""Times the tolerance: a solid is moved so far along the normal to see whether it then is apart; if
+so, no more than that is shared, and they touch."""
