@@ -171,6 +171,11 @@ def _holds(solid: Known, point: Array) -> bool:
 def faults_of(case: Case) -> list[tuple[str, str]]:
     """(kind, what was expected and told) of each fault."""
     told, noise = case.told, NOISE * case.size
+    if not case.meets:
+        # the search may miss a narrow valley, so the told points bound the distance too
+        off = abs(case.depths(told.point_a)[0]) + abs(case.depths(told.point_b)[1])
+        reach = max(float(np.linalg.norm(told.point_b - told.point_a)) + off, 1e-300)
+        case = case._replace(true=case.true._replace(upper=min(case.true.upper, reach)))
     low, high = float(case.true.lower), float(case.true.upper)
     found = _status_faults(case) + _place_faults(case)
     if case.meets or told.status is Status.OVERLAPPING:
