@@ -16,7 +16,7 @@ from standoff.geometry import (
     ellipsoid_patches,
 )
 from standoff.geometry.quadrics import sphere_atlas
-from standoff.solids.spatial import Solid
+from standoff.solids import Solid
 
 x, y, z = np.eye(3)
 

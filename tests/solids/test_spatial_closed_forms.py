@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from spatial_shapes import BRACKET, ball, bolt, bracket, peg, ring, socket, tube
 
-from standoff.solids.spatial import Solid, spatial_distance
+from standoff.solids import Solid
+from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 

@@ -11,7 +11,9 @@ from spatial_shapes import ball, bolt, bracket, egg, ring, tube
 from standoff.bodies.face_leaves import face_charts
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.solids import spatial_closing as C
-from standoff.solids.spatial import Solid, minimum, spatial_distance
+from standoff.solids import Solid
+from standoff.solids.spatial import minimum
+from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
 
 SOLIDS = {
