@@ -20,7 +20,7 @@ from standoff.solids.answer import (
 )
 from standoff.solids.planar.continua import continuum_of, distinct
 from standoff.solids.planar.pair import Queried, Shape
-from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_TO
+from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PARTED_BY, PROVEN_TO
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.status import Status
@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048
 MOST_EVALUATIONS = 4_000_000
+NORMAL_DIGITS = 6
 MOST_SQUARES = 1200
 UNSEEN: Array = np.full(3, np.nan)
 
@@ -192,7 +193,7 @@ def _answer(
             ]
         )
         entries.gradient(arms, gradient)
-    if overlap is None and status is not Status.TOUCHING:
+    if overlap is None and status is not Status.TOUCHING and lower > -np.inf:
         lower = max(lower, 0.0)
     lower -= pair.slack
     return SolidProximity(
@@ -241,9 +242,30 @@ def _meeting(pair: Queried, above: float) -> SolidProximity:
     smooth = Smoothness.PARTIAL if continuum else Smoothness.SMOOTH
     if len(rows) > 1 and not continuum:
         smooth = Smoothness.ONE_SIDED
-    bounds = -pair.tolerance, searched.least
-    counts = _counts(searched.counts)
-    return _answer(pair, Status.TOUCHING, bounds, _pairs(pair, rows), smooth, counts, continuum)
+    pairs, counts = _pairs(pair, rows), _counts(searched.counts)
+    parted = _parted(pair, np.array([each.normal for each in pairs])) if pairs else np.inf
+    status = Status.TOUCHING if parted < np.inf else Status.WITHIN
+    bounds = -parted, searched.least
+    return _answer(pair, status, bounds, pairs, smooth, counts, continuum)
+
+
+def _parted(pair: Queried, normals: Array) -> float:
+    """A length by which moving B along the mean of the normals is proven to part the solids; inf
+    where that is not proven of `PARTED_BY` tolerances."""
+    # each direction once, however many places have it
+    mean = np.unique(normals.round(NORMAL_DIGITS), axis=0).sum(axis=0)
+    size = float(np.linalg.norm(mean))
+    least = float((normals @ mean).min()) / size if size > 0.0 else 0.0
+    if not least > 0.0:
+        return float(np.inf)
+    # so far that each place opens by as much
+    way = PARTED_BY * pair.tolerance / least
+    poses = pair.poses.copy()
+    poses[21:24] += way * mean / size
+    beside = pair._replace(poses=poses)
+    found = search(beside, 0.0, np.inf, meeting=0.0)
+    apart = found.ended != S.MET and found.proven > 0.0 and not any(_inside(beside))
+    return way if apart else float(np.inf)
 
 
 def common_ball(pair: Queried, searched: Searched) -> Overlap | None:

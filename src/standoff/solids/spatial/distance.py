@@ -127,6 +127,9 @@ def _apart(
 ) -> SolidProximity:
     places = _places(pair, found, senses)
     continuum = continuum_of(pair, places, found, senses)
+    if found.lower <= 0.0:
+        # what stays open may be that the boundaries meet, so nothing is known below
+        found = replace(found, lower=-np.inf)
     proven = found.upper - found.lower <= PROVEN * found.tolerance
     if not proven:
         status = Status.DEADLINE if found.counts[0] > evaluations else Status.WITHIN

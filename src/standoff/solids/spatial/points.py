@@ -107,6 +107,8 @@ def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
             gradient[k] = 0.0 if direction is None else direction
         else:
             gradient[k] = sign * away / length
+        if not on_it and found.lower <= 0.0:
+            low[k], high[k] = -found.upper, found.upper  # a nearer place may be on the other side
         nearest[k] = at
         converged[k] = high[k] - low[k] <= 3.0 * found.tolerance
         smooth[k] = _alone(solid, found) and not on_it
