@@ -175,7 +175,8 @@ def faults_of(case: Case) -> list[tuple[str, str]]:
         # the search may miss a narrow valley, so the told points bound the distance too
         off = abs(case.depths(told.point_a)[0]) + abs(case.depths(told.point_b)[1])
         reach = max(float(np.linalg.norm(told.point_b - told.point_a)) + off, 1e-300)
-        case = case._replace(true=case.true._replace(upper=min(case.true.upper, reach)))
+        upper = np.array(min(float(case.true.upper), reach))
+        case = case._replace(true=case.true._replace(upper=upper))
     low, high = float(case.true.lower), float(case.true.upper)
     found = _status_faults(case) + _place_faults(case)
     if case.meets or told.status is Status.OVERLAPPING:
