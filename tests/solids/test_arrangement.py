@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from parts import bolt, plate_with_hole, ring
 
 import standoff as so
-from solids.parts import bolt, plate_with_hole, ring
 from standoff.clearance.assembly import AssemblyFile, assembly_report
 from standoff.clearance.fits import Fit
 from standoff.clearance.page import page_of

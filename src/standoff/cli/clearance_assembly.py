@@ -82,21 +82,21 @@ def _unused(name: str, parts: dict[str, Any]) -> str:
     return found
 
 
-def _files(command: ClearanceCommand, file: AssemblyFile, report: Report) -> dict[Path, Writer]:
+def _files(command: ClearanceCommand, told: AssemblyFile, report: Report) -> dict[Path, Writer]:
     files: dict[Path, Writer] = {}
     page, plot = command.files.page, command.files.plot
-    subject: Any = file
+    subject: Any = told
     if page is not None:
         from standoff.clearance.page import page_of
 
         text = page_of(subject, report, NOTHING_MOVES)
-        files[page] = lambda target: target.write(text.encode())
+        files[page] = lambda file: file.write(text.encode())
     if plot is not None:
         from standoff.clearance.matrix import matrix_figure
 
-        figure = matrix_figure(report, file.title, file.length_unit)
+        figure = matrix_figure(report, told.title, told.length_unit)
         ending = kind_of_picture(plot)
-        files[plot] = lambda target: figure.savefig(target, format=ending)
+        files[plot] = lambda file: figure.savefig(file, format=ending)
     return files
 
 

@@ -31,7 +31,7 @@ ROOM = types.Tuple((WRITE, WRITE_INTS, WRITE))
 CLOSING = 2048
 
 
-@entry(SOLIDS, READ, INTS, WRITE, WRITE, ROOM, WRITE_INTS, work="bodies")
+@entry(SOLIDS, READ, INTS, WRITE, WRITE, ROOM, WRITE_INTS, work="solids")
 def boundary_distance(solids, pose, senses, best, minima, room, counts):
     """Of two solids, B at a pose in A's frame, each seen from outside or inside (`senses`); `best`
     says how far and how to search."""
@@ -44,7 +44,7 @@ def boundary_distance(solids, pose, senses, best, minima, room, counts):
     search(a, b, pointer(best, 0), pointer(minima, 0), heap, space, pointer(counts, 0))
 
 
-@entry(SOLID, READ, INT, types.float64, types.float64, WRITE, work="bodies")
+@entry(SOLID, READ, INT, types.float64, types.float64, WRITE, work="solids")
 def solid_point(solid, pose, leaf, u, v, out):
     """The jet of a leaf (18 numbers) into `out`."""
     jet = leaf_jet(side_at(solid, pose, S.OUTSIDE), leaf, u, v)
@@ -54,7 +54,7 @@ def solid_point(solid, pose, leaf, u, v, out):
             out[3 * i + k] = vector[k]
 
 
-@entry(SOLIDS, READ, INTS, WRITE, WRITE_INTS, work="bodies")
+@entry(SOLIDS, READ, INTS, WRITE, WRITE_INTS, work="solids")
 def nearest_in_leaves(solids, pose, leaves, values, counts):
     """From the parameters values[:4] of two leaves to those of a local minimum, and the distance in
     values[4]."""
