@@ -10,7 +10,7 @@ from spatial_shapes import ball, bolt, bracket, egg, ring, tube
 
 from standoff.bodies.face_leaves import face_charts
 from standoff.kernels.entries.queries import on_face
-from standoff.kernels.solids import spatial_closing as C
+from standoff.kernels.solids import spatial_progress as C
 from standoff.solids import Solid
 from standoff.solids.spatial import minimum
 from standoff.solids.spatial.distance import spatial_distance
@@ -100,11 +100,10 @@ def test_a_bound_that_is_false_is_never_proven(rng, monkeypatch) -> None:
 def negative_tolerance(a: Solid, b: Solid, pose: np.ndarray, beyond: float) -> float:
     """The bound that the search claims where it is asked for one beyond the distance by `beyond`,
     which is false: the least that stayed open."""
-    best = np.zeros(C.BEST_REALS)
-    best[C.LEAST], best[C.OPEN], best[C.TOLERANCE] = np.inf, np.inf, -beyond
-    best[C.SIZE], best[C.BUDGET] = a.size + b.size, 3000
-    best[C.ROUNDING] = 1e-14 * best[C.SIZE]
-    minima, counts = np.zeros(C.MINIMUM_REALS * C.MOST_MINIMA), np.zeros(8, dtype=np.int64)
+    size = a.size + b.size
+    best, minima = minimum.started(minimum.Sought(-beyond, 30_000), size, 0.0)
+    best[C.MEETING] = 0.0
+    counts = np.zeros(8, dtype=np.int64)
     room = minimum._scratch(0)
     senses = np.array([1, 1], dtype=np.int64)
     minimum.boundary_distance((a.packed, b.packed), pose, senses, best, minima, room, counts)

@@ -21,12 +21,13 @@ from standoff.kernels.solids.planar_tolerances import END_OF_PIECE
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
+from standoff.solids.asked import Asked
 from standoff.solids.planar.area import area_of
 from standoff.solids.planar.loops import Loop, read_loop
 from standoff.solids.planar.nesting import check_simple, nested, oriented
 from standoff.solids.planar.of_bodies import loops_of_body
 from standoff.solids.planar.outline import Outline, packed_outline
-from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
 
 Array = NDArray[np.float64]

@@ -8,11 +8,12 @@ from itertools import islice
 import numpy as np
 
 from standoff.geometry.validation import Array
-from standoff.kernels.entries.solids import nearest_in_leaves
+from standoff.kernels.entries.solids import gradient, nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.motion.pose import Pose
 from standoff.solids.answer import NearestPair
-from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
+from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
@@ -51,11 +52,28 @@ class PlacedPair:
     def in_b(self, points: Array) -> Array:
         return np.asarray((points - self.pb) @ self.rb)
 
-    def least(self, senses: tuple[int, int], budget: int, below: float = np.inf) -> Found:
+    @property
+    def slack(self) -> float:
+        """Of both solids, length."""
+        return self.a.slack + self.b.slack
+
+    @property
+    def poses(self) -> tuple[Array, Array]:
+        """World poses (12,) of both: R by rows, p."""
+        return (
+            np.concatenate([self.ra.ravel(), self.pa]),
+            np.concatenate([self.rb.ravel(), self.pb]),
+        )
+
+    def least(self, senses: tuple[int, int], sought: Sought) -> Found:
         """The search between both boundaries, each seen from outside or inside."""
         return least_distance(
-            self.a.packed, self.b.packed, self.relative, senses, self.size, budget, below
+            self.a.packed, self.b.packed, self.relative, senses, self.size, sought
         )
+
+    def moved(self, way: Array) -> PlacedPair:
+        """The same pair with B moved by a world vector."""
+        return PlacedPair(self.a, self.b, Pose(self.ra, self.pa), Pose(self.rb, self.pb + way))
 
     def place(self, row: Array, senses: tuple[int, int]) -> Place:
         """Of a row (distance, leaf_a, leaf_b, parameters)."""
@@ -87,7 +105,7 @@ class PlacedPair:
         leaf_a, leaf_b = int(row[1]), int(row[2])
         return NearestPair(
             place.distance,
-            min(lower, place.distance),
+            min(max(lower, float(row[BOUND])), place.distance) - self.slack,
             place.point_a,
             place.point_b,
             place.normal,
@@ -99,10 +117,10 @@ class PlacedPair:
 
     def gradient(self, place: Place) -> Array:
         """(12,) by unit twists (v_A, omega_A, v_B, omega_B), world axes."""
-        n = place.normal
-        return np.concatenate(
-            [-n, -np.cross(place.point_a - self.pa, n), n, np.cross(place.point_b - self.pb, n)]
-        )
+        to = np.zeros(12)
+        arms = [place.normal, place.point_a - self.pa, place.point_b - self.pb]
+        gradient(np.concatenate(arms), False, to)
+        return to
 
     def found_from(self, row: Array, start: Array) -> Array | None:
         """A row of the local minimum that Newton's method finds in a row's leaves from other

@@ -66,6 +66,5 @@ within a face it is 1. At a sharp edge one face's normal is nearly against the o
 BESIDE_EDGE: Final = 1e-2
 """Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
 is; less is told by a ray."""
-PARTED: Final = 4.0
-"""Times the tolerance: a solid is moved so far along the normal to see whether it then is apart; if
-so, no more than that is shared, and they touch."""
+COLLAPSED_SIDE: Final = 1e-9
+"""Of the size: a side of a face's rectangle nearer to a vertex than this is collapsed to it."""
