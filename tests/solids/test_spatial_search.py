@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
-from spatial_shapes import ball, bolt, bracket, egg, ring, tube
+from spatial_shapes import ball, bolt, bracket, egg, ring, samples, tube
 
-from standoff.bodies.face_leaves import face_charts
-from standoff.kernels.entries.queries import on_face
 from standoff.kernels.solids import spatial_progress as C
 from standoff.solids import Solid
 from standoff.solids.spatial import minimum
@@ -24,23 +22,6 @@ SOLIDS = {
 }
 PAIRS = [("bolt", "bracket"), ("tube", "bolt"), ("bracket", "ball")]
 POSES, MORE = 5, 60
-
-
-def samples(solid: Solid, across: int = 40) -> np.ndarray:
-    boundary = solid.boundary
-    found = [np.asarray(boundary.vertex_points).reshape(-1, 3)]
-    for chart in face_charts(boundary):
-        u0, u1, v0, v1 = chart.rectangle
-        found += [
-            chart.surface.jet(u, v)[0][None]
-            for u in np.linspace(u0, u1, across)
-            for v in np.linspace(v0, v1, across)
-            if on_face(boundary.ints, boundary.reals, chart.number, u, v)
-        ]
-    for edge in boundary.edge_parts:
-        spots = np.linspace(edge.curve.first, edge.curve.last, 100)
-        found.append(np.array([edge.curve.point(t) for t in spots]))
-    return np.vstack(found)
 
 
 def judge(a: Solid, b: Solid, rng: np.random.Generator, poses: int) -> None:

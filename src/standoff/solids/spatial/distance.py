@@ -22,8 +22,9 @@ from standoff.solids.spatial.overlap import common_ball
 from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, within_box
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid_model import SolidModel, as_model
+from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
-from standoff.solids.spatial.tolerances import PROOF_ROUNDING, PROOF_TOLERANCE
+from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_ROUNDING, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -100,7 +101,7 @@ def spatial_distance(
     sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=LISTED)
     found = pair.least(senses, sought)
     if found.met:
-        return _meeting(pair, sought, senses)
+        return _meeting(pair, found, sought, senses)
     if within is not None and found.upper >= horizon and not inside and found.lower >= within:
         return _answer(pair, replace(found, upper=np.inf), [], Told(Status.FAR))
     if found.upper >= horizon and not found.n_open:
@@ -140,8 +141,19 @@ def _places(pair: PlacedPair, found: Found, senses: tuple[int, int], above: floa
         return []
     if above > 0.0:
         return local_minima(pair, found, senses)
-    rows = [found.best, *found.minima[:MOST_TIES]]
+    rows = [found.best, *_spread(pair, found.minima)[:MOST_TIES]]
     return distinct(pair, [pair.place(row, senses) for row in rows])
+
+
+def _spread(pair: PlacedPair, rows: Array) -> list[Array]:
+    """Rows in an order in which each pair of features comes before any comes again."""
+    seen: dict[tuple[int, int], int] = {}
+    rank = []
+    for row in rows:
+        key = pair.a.leaves[int(row[1])].feature, pair.b.leaves[int(row[2])].feature
+        rank.append(seen.get(key, 0))
+        seen[key] = rank[-1] + 1
+    return [rows[k] for k in np.argsort(rank, kind="stable")]
 
 
 def _apart(
@@ -182,9 +194,10 @@ def _smoothness(near: list[Place], continuum: Continuum | None) -> Smoothness:
     return Smoothness.ONE_SIDED if len(near) > 1 else Smoothness.SMOOTH
 
 
-def _meeting(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
+def _meeting(
+    pair: PlacedPair, found: Found, sought: Sought, senses: tuple[int, int]
+) -> SolidProximity:
     """The boundaries meet: the solids overlap, or touch."""
-    found = pair.least(senses, sought._replace(below=np.inf, on_meeting=False))
     place = pair.place(found.best, senses)
     middle = 0.5 * (place.point_a + place.point_b)
     starts = [middle]
@@ -197,10 +210,21 @@ def _meeting(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Solid
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
     if overlap:
         return _answer(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
-    places = _places(pair, found, senses, sought.above)
-    near = [each for each in places if each.distance <= found.upper + found.tolerance]
+    return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
+
+
+def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
+    """No ball was found inside both: all places of contact, and whether they can be parted."""
+    # local minima below the tolerance, so that nothing is to be closed
+    found = _contacts(pair, pair.least(senses, sought._replace(above=0.5 * sought.tolerance)), senses)
+    near = _places(pair, found, senses, 0.0)
     continuum = continuum_of(pair, near, found, senses)
-    way = parted(_normals(pair, near), found.tolerance, lambda by: _is_apart(pair.moved(by)))
+    normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])
+    way = parted(normals, found.tolerance, lambda by: _is_apart(pair.moved(by)))
+    places = near
+    if sought.above > 0.0:
+        others = _places(pair, pair.least(senses, sought), senses, sought.above)
+        places = near + [each for each in others if each.distance > near[-1].distance]
     met = replace(found, lower=-way)
     if way < np.inf:
         told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
@@ -208,15 +232,19 @@ def _meeting(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Solid
     return _answer(pair, met, places, Told(Status.WITHIN, open=around(pair, near)))
 
 
-def _normals(pair: PlacedPair, places: list[Place]) -> Array:
-    """Of places of contact (n, 3): of those with a face if there are any, as a normal at an edge is
-    only one of several."""
-    on_faces = [
-        place.normal
-        for place in places
-        if 2 in (pair.a.leaves[int(place.row[1])].dim, pair.b.leaves[int(place.row[2])].dim)
-    ]
-    return np.array(on_faces or [place.normal for place in places])
+def _nearest(found: Found) -> Array:
+    return found.minima[found.minima[:, 0] <= found.upper + found.tolerance]
+
+
+def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
+    """Without the places where boundaries only cross, as those of a solid's face and of the sides
+    of what stands on it, unless there is no other."""
+    rows = _nearest(found)
+    touch = [row for row in rows if is_stationary(pair, pair.place(row, senses), IN_CONTACT)]
+    if not touch:
+        return found
+    farther = found.minima[len(rows) :]
+    return replace(found, minima=np.concatenate([touch, farther]), best=touch[0])
 
 
 def _is_apart(pair: PlacedPair) -> bool:

@@ -17,7 +17,7 @@ from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_di
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import HAS_DIRECTION
+from standoff.solids.spatial.tolerances import COLLAPSED_FRAME, HAS_DIRECTION, LEAST_LENGTH
 
 
 @dataclass(frozen=True)
@@ -87,18 +87,36 @@ class PlacedPair:
         return Place(row, x, y, normal)
 
     def _normal_at(self, row: Array, senses: tuple[int, int]) -> Array:
-        """From a face, where the points are too near to each other for a direction."""
+        """From a face, or across two edges, where the points are too near to each other for a
+        direction."""
         sides = (
             (self.a, int(row[1]), row[3:5], self.ra, 1.0 if senses[0] == S.OUTSIDE else -1.0),
             (self.b, int(row[2]), row[5:7], self.rb, -1.0 if senses[1] == S.OUTSIDE else 1.0),
         )
+        across = self._across_edges(row)
         ordered = sorted(sides, key=lambda side: -side[0].leaves[side[1]].dim)
         for solid, leaf, (u, v), rotation, sign in ordered:
             out = outside_direction(solid, leaf, float(u), float(v))
             if out is not None:
                 found = sign * (rotation @ out)
+                if across is not None:
+                    found = across if across @ found > 0.0 else -across
                 return np.asarray(found / np.linalg.norm(found))
         return np.array([0.0, 0.0, 1.0])
+
+    def _across_edges(self, row: Array) -> Array | None:
+        """Normal to both edges of a row; None where it has no two, or they are parallel."""
+        ways = []
+        for solid, leaf, at, rotation in (
+            (self.a, int(row[1]), row[3:5], self.ra),
+            (self.b, int(row[2]), row[5:7], self.rb),
+        ):
+            if solid.leaves[leaf].dim != 1:
+                return None
+            tangent = rotation @ leaf_jet_of(solid.packed, leaf, *at)[1]
+            ways.append(tangent / max(float(np.linalg.norm(tangent)), LEAST_LENGTH))
+        normal = np.cross(*ways)
+        return normal if float(np.linalg.norm(normal)) > COLLAPSED_FRAME else None
 
     def nearest_pair(self, place: Place, lower: float) -> NearestPair:
         row = place.row

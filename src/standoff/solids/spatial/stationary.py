@@ -16,21 +16,19 @@ from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.sides import corner_of
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import COLLAPSED_SIDE, HAS_DIRECTION
+from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
 
 # Directions that are looked into at a vertex that is a face's collapsed side.
 AROUND = 17
 
 
-def is_stationary(pair: PlacedPair, place: Place) -> bool:
-    """Can no small step on either boundary make a pair nearer, to first order? One without a
-    direction is as near as can be."""
-    if place.distance <= HAS_DIRECTION * pair.size:
-        return True
+def is_stationary(pair: PlacedPair, place: Place, sine: float = AT_OPTIMUM) -> bool:
+    """Can no small step on either boundary make a pair nearer along its normal, to first order?
+    `sine`: of the angle by which one may."""
     n, row = place.normal, place.row
     return (
-        _steepest(pair.a, int(row[1]), row[3:5], pair.ra.T @ n) <= AT_OPTIMUM
-        and _steepest(pair.b, int(row[2]), row[5:7], -pair.rb.T @ n) <= AT_OPTIMUM
+        _steepest(pair.a, int(row[1]), row[3:5], pair.ra.T @ n) <= sine
+        and _steepest(pair.b, int(row[2]), row[5:7], -pair.rb.T @ n) <= sine
     )
 
 

@@ -68,3 +68,7 @@ BESIDE_EDGE: Final = 1e-2
 is; less is told by a ray."""
 COLLAPSED_SIDE: Final = 1e-9
 """Of the size: a side of a face's rectangle nearer to a vertex than this is collapsed to it."""
+IN_CONTACT: Final = 1e-3
+"""Sine of the angle between the normals at a place of contact: where boundaries are nearer than the
+tolerance their normals differ by up to its root, 1e-5, and by more where they bend sharply. At
+places where they cross it is far greater."""
