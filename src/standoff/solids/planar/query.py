@@ -120,22 +120,22 @@ def _first(loop: Any) -> Array:
 
 
 def _counts(counts: NDArray[np.int64]) -> SolidCounts:
-    jets, nodes, leaves, boxes, cuts, left = (int(n) for n in counts)
-    return SolidCounts(jets + nodes + boxes, nodes, leaves, boxes, cuts, left)
+    jets, nodes, leaves, boxes, cuts, _ = (int(n) for n in counts)
+    return SolidCounts(jets + nodes + boxes, nodes, leaves, boxes, cuts)
 
 
-def _open(pair: Queried, searched: Searched) -> tuple[OpenPair, ...]:
-    """What a search left: pieces in boxes."""
-    goal = searched.least - pair.tolerance
-    rows = [row for row in searched.left[:LISTED] if row[0] < goal]
-    return tuple(
+def _open(pair: Queried, searched: Searched) -> tuple[tuple[OpenPair, ...], int]:
+    """What a search left: pieces in boxes, the nearest first; and how many."""
+    rows = searched.left[searched.left[:, 0] < searched.least - pair.tolerance]
+    listed = tuple(
         OpenPair(
             float(row[0]) - pair.slack,
             *(NO_FEATURE, NO_FEATURE),
             *(_corners(pair, row[at : at + 8]) for at in (1, 9)),
         )
-        for row in rows
+        for row in rows[:LISTED]
     )
+    return listed, len(rows)
 
 
 def _corners(pair: Queried, piece: Array) -> Array:
@@ -198,7 +198,10 @@ def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None)
     found = _answer(
         pair, status, bounds, pairs, smooth, _counts(searched.counts), continuum, inside
     )
-    return found if apart and proven else replace(found, open=_open(pair, searched))
+    if apart and proven:
+        return found
+    listed, count = _open(pair, searched)
+    return replace(found, open=listed, counts=found.counts._replace(open=count))
 
 
 def _answer(

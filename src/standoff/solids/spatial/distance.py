@@ -49,6 +49,7 @@ class Told(NamedTuple):
     overlap: Overlap | None = None
     inside: Inside = ""
     open: tuple[OpenPair, ...] = ()
+    n_open: int = 0
 
 
 def spatial_distance(
@@ -181,8 +182,8 @@ def _apart(
     smoothness = _smoothness(near, continuum)
     if not proven and found.lower <= 0.0:
         smoothness = UNDEFINED
-    left = () if proven else open_pairs(pair, found)
-    told = Told(status, smoothness, continuum, None, inside, left)
+    left, n_left = ((), 0) if proven else open_pairs(pair, found)
+    told = Told(status, smoothness, continuum, None, inside, left, n_left)
     return _answer(pair, found, places, told)
 
 
@@ -229,7 +230,8 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     if way < np.inf:
         told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
         return _answer(pair, met, places, told)
-    return _answer(pair, met, places, Told(Status.WITHIN, open=around(pair, near)))
+    left = around(pair, near)
+    return _answer(pair, met, places, Told(Status.WITHIN, open=left, n_open=len(left)))
 
 
 def _nearest(found: Found) -> Array:
@@ -279,5 +281,5 @@ def _answer(pair: PlacedPair, found: Found, places: list[Place], told: Told) -> 
         feature_b=first.feature_b, parameters_a=first.parameters_a,
         parameters_b=first.parameters_b, minima=minima, continuum=told.continuum,
         overlap=told.overlap, inside=told.inside, open=told.open, gradient_rows=gradient,
-        smoothness=told.smoothness, counts=found.told, poses=pair.poses,
+        smoothness=told.smoothness, counts=found.told._replace(open=told.n_open), poses=pair.poses,
     )  # fmt: skip

@@ -18,10 +18,12 @@ LISTED = 64
 """Open pairs that an answer has."""
 
 
-def open_pairs(pair: PlacedPair, found: Found) -> tuple[OpenPair, ...]:
-    """Those of a search that ended before all was closed."""
-    goal = found.upper - found.tolerance
-    return tuple(_of_row(pair, row) for row in found.left if row[-1] < goal)
+def open_pairs(pair: PlacedPair, found: Found) -> tuple[tuple[OpenPair, ...], int]:
+    """Those of a search that ended before all was closed, and how many there are; if more than are
+    listed, with those that were closed by what was found later."""
+    rows = found.left[found.left[:, -1] < found.upper - found.tolerance]
+    count = len(rows) if found.n_open <= LISTED else found.n_open
+    return tuple(_of_row(pair, row) for row in rows), count
 
 
 def around(pair: PlacedPair, places: list[Place]) -> tuple[OpenPair, ...]:

@@ -79,7 +79,7 @@ class Found:
     def told(self) -> SolidCounts:
         """The counts as an answer has them."""
         boxes, steps, nodes, leaves, cuts = self.counts
-        return SolidCounts(boxes + 2 * steps + nodes, nodes, leaves, boxes, cuts, self.n_open)
+        return SolidCounts(boxes + 2 * steps + nodes, nodes, leaves, boxes, cuts)
 
 
 @lru_cache(maxsize=8)
