@@ -3,6 +3,8 @@ leaves that is left is closed."""
 
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.crossing_planes import planes_apart
+from standoff.kernels.solids.over_plane import clear_of_plane
 from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
 from standoff.kernels.solids.spatial_closing import close_leaves, nearest_of, no_pair
 from standoff.kernels.solids.spatial_pieces import leaf_box
@@ -16,6 +18,7 @@ from standoff.kernels.solids.spatial_progress import (
     NOWHERE,
     OF_LEAVES,
     ROUNDING,
+    SIZE,
     bound_minima,
     evaluations,
     farthest,
@@ -23,6 +26,9 @@ from standoff.kernels.solids.spatial_progress import (
     keep_found,
     leave_open,
 )
+
+# Boxes that a pair with a plane is looked at with: when it is met, and when it is closed.
+MOST_VISITED, MOST_CLOSING = 12, 100
 
 
 @kernel
@@ -77,10 +83,23 @@ def search(a, b, best, minima, heap, room, counts):
         if low < goal_of(best) and best[MET] == 0.0:
             counts[LEAF_PAIRS] += 1
             best[OF_LEAVES] = goal_of(best) - best[ROUNDING]
-            close_leaves(a, leaf_a, b, leaf_b, low, best, minima, work, counts)
+            pa = S.Part(a, leaf_a, leaf_box(a, leaf_a))
+            pb = S.Part(b, leaf_b, leaf_box(b, leaf_b))
+            if not left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
+                close_leaves(a, leaf_a, b, leaf_b, low, best, minima, work, counts)
             low = best[OF_LEAVES]
         if best[ABOVE] > 0.0:
             bound_minima(best, minima, leaf_a, leaf_b, low)
+
+
+@kernel
+def left_out(a, b, goal, most, best, counts):
+    """Do two parts, one or both of a plane, hold no nearest pair nearer than `goal`?"""
+    if planes_apart(a, b, best[SIZE]):
+        return True
+    if clear_of_plane(a, b, goal, best[ROUNDING], most, counts):
+        return True
+    return clear_of_plane(b, a, goal, best[ROUNDING], most, counts)
 
 
 @kernel
@@ -88,7 +107,7 @@ def visit(a, b, key, best, minima, room, left, counts):
     """Look for nearer points in a pair of leaves, and list it; how many are listed."""
     pairs, most, _ = room
     done, low = no_pair(a, b, farthest(best), best[ROUNDING])
-    if done:
+    if done or left_out(a, b, farthest(best), MOST_VISITED, best, counts):
         return left
     q, distance = nearest_of(a, b, counts)
     keep_found(a, b, q, distance, best, minima)
