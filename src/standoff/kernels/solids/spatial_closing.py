@@ -14,7 +14,6 @@ from standoff.kernels.solids.spatial_minimum import (
 )
 from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
-    leaf_box,
     leaf_jet,
     leaf_reals,
     natural,
@@ -261,10 +260,11 @@ def put_halves(a, b, best, work, count, low):
 
 
 @kernel
-def close_leaves(a, leaf_a, b, leaf_b, low, best, minima, work, counts):
-    """Close a pair of leaves, cutting it where it has to be; what stays open lowers best[OPEN].
-    `low`: a bound of it."""
-    put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
+def close_leaves(pair, low, best, minima, work, counts):
+    """Close a pair of leaves' parts, cutting it where it has to be; what stays open lowers
+    best[OPEN]. `low`: a bound of it."""
+    (a, leaf_a, box_a), (b, leaf_b, box_b) = pair
+    put_pair(work, 0, box_a, box_b, low)
     count = 1
     while count > 0 and best[MET] == 0.0:
         count -= 1

@@ -284,8 +284,7 @@ def face_cones(
 def edge_cones(
     charts: dict[int, FaceChart], pieces: list[Piece], ranges: dict[int, list[tuple[float, float]]]
 ) -> dict[int, list[Cone]]:
-    """(axis, half angle) of a cone round both faces' outward normals along each part of each edge.
-    """
+    """(axis, half angle) of a cone round both faces' normals along each part of each edge."""
     around = face_cones(charts, pieces, ranges)
     return {
         edge: [
