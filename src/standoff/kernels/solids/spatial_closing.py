@@ -3,6 +3,7 @@
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.coaxial import coaxial_between, common_axis
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
     across,
@@ -43,6 +44,8 @@ MOST_MINIMA = 256
 # Pairs of boxes that wait, of 9 numbers each.
 PAIR_REALS = 9
 MOST_PAIRS = 200
+# Boxes that a potential is bounded over, of one piece: few at first, for another may do.
+FEW_BOXES, MOST_BOXES = 20, 400
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
 MARGINS = (1.0, 0.3, 3.0)
 
@@ -89,14 +92,14 @@ def held_along(part, jet, toward, u, v):
 
 
 @kernel
-def by_own_surface(goal, a, b, q, counts):
+def by_own_surface(goal, a, b, q, limit, counts):
     """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
     known, phi = natural(a.side, a.leaf)
-    return known and proven(phi, -1.0, -goal, b, q, counts)
+    return known and proven(phi, -1.0, -goal, b, q, limit, counts)
 
 
 @kernel
-def by_witness(goal, a, b, at, best, counts):
+def by_witness(goal, a, b, at, limit, best, counts):
     """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
@@ -106,7 +109,7 @@ def by_witness(goal, a, b, at, best, counts):
         return False
     x, y = ja[0], jb[0]
     here = wa == a.leaf and wb == b.leaf
-    place = (here, q, x, y)
+    place = (here, q, x, y, limit)
     if by_one(plane_between(x, y, n), goal, a, b, place, counts):
         return True
     span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
@@ -117,7 +120,14 @@ def by_witness(goal, a, b, at, best, counts):
     held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
+    turned, point, axis = common_axis(a, b, n, size)
     for k in range(3):
+        if turned:
+            known, phi = coaxial_between(
+                x, y, n, frame, (sa, sb), (point, axis), MARGINS[k] / span, size
+            )
+            if known and by_one(phi, goal, a, b, place, counts):
+                return True
         phi = torus_between(x, y, n, frame, sa, sb, MARGINS[k] / span)
         if by_one(phi, goal, a, b, place, counts):
             return True
@@ -133,7 +143,7 @@ def middle(box):
 def by_one(phi, goal, a, b, place, counts):
     """By one potential through points x and y, whose parameters q are those of the parts if `here`;
     each part gets half of what the potential gains beyond the goal."""
-    here, q, x, y = place
+    here, q, x, y, limit = place
     low, high = potential_jet(phi, x, 0.0)[0], potential_jet(phi, y, 0.0)[0]
     spare = 0.5 * (high - low - goal)
     if spare < 0.0:
@@ -141,9 +151,9 @@ def by_one(phi, goal, a, b, place, counts):
     pa, pb = (q[0], q[1]), (q[2], q[3])
     if not here:
         pa, pb = middle(a.box), middle(b.box)
-    if not proven(phi, 1.0, low + spare, a, pa, counts):
+    if not proven(phi, 1.0, low + spare, a, pa, limit, counts):
         return False
-    return proven(phi, -1.0, spare - high, b, pb, counts)
+    return proven(phi, -1.0, spare - high, b, pb, limit, counts)
 
 
 @kernel
@@ -247,17 +257,29 @@ def closed_by_any(a, b, best, minima, counts):
     if best[MET] > 0.0:
         return True
     goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-    if by_own_surface(goal, a, b, (q[2], q[3]), counts):
+    if by_potentials(goal, a, b, q, distance, FEW_BOXES, best, counts):
         return True
-    if by_own_surface(goal, b, a, (q[0], q[1]), counts):
+    # a nearer place off a trim: it is cut away sooner than bounded
+    if distance < goal:
+        return False
+    return by_potentials(goal, a, b, q, distance, MOST_BOXES, best, counts)
+
+
+@kernel
+def by_potentials(goal, a, b, q, distance, limit, best, counts):
+    """Does any potential prove it: of the surfaces themselves, through the nearest points found in
+    the pair, or through the nearest ones of all?"""
+    if by_own_surface(goal, a, b, (q[2], q[3]), limit, counts):
         return True
-    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), best, counts):
+    if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
+        return True
+    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), limit, best, counts):
         return True
     wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
     if wa == a.leaf and wb == b.leaf and distance >= goal:
         return False
     at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
-    return by_witness(goal, a, b, (wa, wb, at), best, counts)
+    return by_witness(goal, a, b, (wa, wb, at), limit, best, counts)
 
 
 @kernel
