@@ -1,5 +1,5 @@
-"""What an answer marks in a picture: nearest points, ties, ends of a continuum, the common ball, and
-pieces that stay open."""
+"""What an answer marks in a picture: nearest points, ties, ends of a continuum, the common ball,
+and pieces that stay open."""
 
 from __future__ import annotations
 
@@ -84,7 +84,9 @@ def marks_legend(answer: SolidProximity, size: float, unit: str) -> list[Artist]
     others = len(answer.minima) - 1
     if others > 0:
         farther = answer.minima[-1].distance > answer.distance + 1e-6 * size
-        one, many = ("local minimum", "local minima") if farther else ("nearest pair", "nearest pairs")
+        one, many = (
+            ("local minimum", "local minima") if farther else ("nearest pair", "nearest pairs")
+        )
         label = f"1 more {one}" if others == 1 else f"{others} more {many}"
         handles.append(Line2D([], [], label=label, **TIE))  # type: ignore[arg-type]
     if answer.continuum is not None:

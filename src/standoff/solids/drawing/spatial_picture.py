@@ -193,7 +193,7 @@ def finish(axes: Axes, camera: Camera, unit: str) -> None:
     axes.set_axis_off()
     wide = camera.wide
     arm, foot = 0.05 * wide, 0.05 * wide
-    spot = camera.low + [0.0, -foot]
+    spot = camera.low + np.array([0.0, -foot])
     look: dict[str, Any] = {"fontsize": "small", "ha": "center", "va": "center"}
     for name, way in zip("xyz", camera.axes[:2].T, strict=True):
         axes.plot(*np.stack([spot, spot + arm * way]).T, color="black", linewidth=1.0)
