@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from standoff.world.impact import WorldImpact
     from standoff.world.pair_answer import PairAnswer
     from standoff.world.pair_arrays import PairArrays
+    from standoff.world.solid_answer import SolidPairAnswer
     from standoff.world.state import WorldState
     from standoff.world.world import World
 else:
@@ -21,6 +22,7 @@ else:
             "standoff.world.impact": ("WorldImpact",),
             "standoff.world.pair_answer": ("PairAnswer",),
             "standoff.world.pair_arrays": ("PairArrays",),
+            "standoff.world.solid_answer": ("SolidPairAnswer",),
             "standoff.world.state": ("WorldState",),
             "standoff.world.world": ("World",),
         },
@@ -30,6 +32,7 @@ __all__ = [
     "Compound",
     "PairAnswer",
     "PairArrays",
+    "SolidPairAnswer",
     "World",
     "WorldAnswer",
     "WorldImpact",

@@ -21,7 +21,7 @@ from standoff.world.carried import carried_pieces, carried_rows, carried_table
 from standoff.world.model import Model
 from standoff.world.narrow_phase import Asked, Moment, Refused, ask
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
-from standoff.world.state import Tree, WorldCounts, WorldState
+from standoff.world.state import NO_SOLIDS, SolidAnswers, Tree, WorldCounts, WorldState
 
 Array = NDArray[np.float64]
 Twists = tuple[Array, bool]
@@ -63,7 +63,7 @@ def _sought(
     tree = first_tree(search, frame)
     frame.sought[:] = 1
     table = table_of(search, frame, tree, known[0])
-    asked = _asked(world, frame, table, known[1], moment)
+    asked = _asked(world, given, (frame, table), (known[1], NO_SOLIDS), moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
@@ -91,7 +91,8 @@ def next_state(
         table = Table(table.ints.copy(), table.known.copy())
     time = before.time + dt
     moment = Moment(before.frame + 1, time, dt, *twists, may_rest, world.minima, workers)
-    asked = _asked(world, frame, table, before.pages, moment)
+    kept = before.pages, before.solids
+    asked = _asked(world, given, (frame, table), kept, moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
@@ -109,12 +110,20 @@ def _placed(
 
 
 def _asked(
-    world: Model, frame: Placed, table: Table, pages: tuple[Array, ...], moment: Moment
+    world: Model,
+    given: GivenPoses,
+    found: tuple[Placed, Table],
+    kept: tuple[tuple[Array, ...], SolidAnswers],
+    moment: Moment,
 ) -> Asked:
     """`ask`, with the names of the bodies in an error."""
-    pieces = world.search.pieces
+    pieces, (pages, before), solids = world.search.pieces, kept, None
+    if world.solids.any:
+        from standoff.world.solid_rows import SolidRows
+
+        solids = SolidRows(world, given.matrices, *found, before, moment)
     try:
-        return ask(world.laws, pieces, frame, table, pages, moment)
+        return ask(world.laws, pieces, *found, pages, moment, solids)
     except Refused as refused:
         p, q, why = refused.args
         names = tuple(world.listed[pieces.owners[k]][0] for k in (p, q))
@@ -166,6 +175,7 @@ def _state(
         known=known,
         near=near,
         pages=asked.pages,
+        solids=asked.solids,
         counts=counts,
         repaired=given.repaired,
     )

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose, PoseLike
@@ -17,9 +16,10 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import checked_law
 from standoff.world.compound import Compound, Piece, name_of
 from standoff.world.poses import GivenPoses, mend_poses
+from standoff.world.shapes import Shape, as_shape
 
 Array = NDArray[np.float64]
-BodyLike = Body | Compound
+BodyLike: TypeAlias = "Shape | Compound"
 
 
 def law_of_pairs(law: Any) -> Law:
@@ -96,15 +96,17 @@ def checked_bodies(bodies: Any) -> dict[str, BodyLike]:
             "bodies",
             bodies,
         )
+    found: dict[str, BodyLike] = {}
     for name, body in bodies.items():
-        if not isinstance(body, Body | Compound):
+        shape = body if isinstance(body, Compound) else as_shape(body)
+        if shape is None:
             raise StandoffTypeError(
-                f"The body {name_of(name)!r} is {shown(body)}: give a Body or a Compound.",
+                f"The body {name_of(name)!r} is {shown(body)}: give a Body, a Solid or a Compound.",
                 "bodies",
                 body,
             )
-        name_of(name)
-    return dict(bodies)
+        found[name_of(name)] = shape
+    return found
 
 
 def named_pieces(bodies: Mapping[str, BodyLike]) -> dict[str, Piece]:

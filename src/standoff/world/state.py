@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,9 @@ from numpy.typing import NDArray
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
+
+if TYPE_CHECKING:
+    from standoff.solids.answer import SolidProximity
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,7 +45,8 @@ class WorldCounts(NamedTuple):
     Attributes
     ----------
     open : int
-        Pairs of pieces whose tracker's state is kept.
+        Pairs of pieces whose tracker's state is kept; of bodies with a solid, pairs of bodies whose
+        answer is.
     tracked : int
         Pairs that went on from it in this frame.
     started : int
@@ -63,6 +68,24 @@ class WorldCounts(NamedTuple):
     bounded: int
     sought: int
     uncertified: int
+
+
+class SolidAnswers(NamedTuple):
+    """Of the near pairs with a solid.
+
+    Attributes
+    ----------
+    pieces : mapping of int to SolidProximity
+        Of pairs of pieces, by their keys in the table.
+    bodies : mapping of int to SolidProximity
+        Of pairs of bodies, by their numbers.
+    """
+
+    pieces: Mapping[int, SolidProximity]
+    bodies: Mapping[int, SolidProximity]
+
+
+NO_SOLIDS = SolidAnswers({}, {})
 
 
 class WorldState(KeepsReadOnly):
@@ -94,6 +117,7 @@ class WorldState(KeepsReadOnly):
         "placed",
         "poses",
         "repaired",
+        "solids",
         "time",
         "tree",
     )
@@ -120,6 +144,7 @@ class WorldState(KeepsReadOnly):
     pages: tuple[Array, ...]
     counts: WorldCounts
     repaired: int
+    solids: SolidAnswers
 
     @property
     def nbytes(self) -> int:
