@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.world import arrays as W
+from standoff.progress import Progress
 from standoff.tracking.answers import proven
 from standoff.world.broad_phase import (
     Placed,
@@ -29,10 +30,12 @@ Twists = tuple[Array, bool]
 NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))
 
 
-def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState:
+def started_state(
+    world: Model, given: GivenPoses, twists: Twists, progress: Progress | None = None
+) -> WorldState:
     """The state of a first frame."""
     before = empty_placed(len(world.search.pieces.owners)).placed
-    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
+    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1, progress)
     return _sought(world, given, before, (NO_PAIRS, ()), moment)
 
 

@@ -11,6 +11,7 @@ from standoff.kernels.entries import world as kernels
 from standoff.kernels.entries import world_answers
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
+from standoff.progress import Progress
 from standoff.tracking.threads import in_parts
 from standoff.world.broad_phase import Placed, Table
 from standoff.world.packed import PackedLaws, PackedPieces
@@ -41,6 +42,8 @@ class Moment(NamedTuple):
     minima : float
         All minima below it are asked, length.
     workers : int
+    progress : callable, optional
+        Told how many pairs with a solid are done, and of how many.
     """
 
     frame: int
@@ -51,6 +54,7 @@ class Moment(NamedTuple):
     may_rest: bool
     minima: float
     workers: int
+    progress: Progress | None = None
 
 
 class Refused(Exception):

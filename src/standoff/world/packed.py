@@ -79,7 +79,7 @@ def _facts(shape: Shape) -> Array:
     row[W.F_PLANAR] = 1.0 if dimension_of_shape(shape) == 2 else 0.0
     if not is_bounded(shape):
         row[W.F_PLANE] = 1.0
-        normal, offset = outer_plane(shape)  # type: ignore[arg-type]
+        normal, offset = outer_plane(shape)
         row[W.F_NORMAL : W.F_NORMAL + 3], row[W.F_OFFSET] = normal, offset
         return row
     row[W.F_CENTRE : W.F_CENTRE + 3] = centre

@@ -24,13 +24,13 @@ Array = NDArray[np.float64]
 
 GATHERED = np.array(
     [
-        *(K.DISTANCE, K.UPPER_BOUND, K.OUT_RATE),
+        *(K.DISTANCE, K.UPPER_BOUND, K.OUT_RATE, K.LOWER_BOUND),
         *(o + i for o in (K.POINT_A, K.POINT_B, K.NORMAL) for i in range(3)),
     ]
 )
 """The numbers of an answer that have an array here: read from the pages at once."""
-DISTANCE, UPPER_BOUND, RATE = range(3)
-POINT_A, POINT_B, NORMAL = slice(3, 6), slice(6, 9), slice(9, 12)
+DISTANCE, UPPER_BOUND, RATE, LOWER_BOUND = range(4)
+POINT_A, POINT_B, NORMAL = slice(4, 7), slice(7, 10), slice(10, 13)
 
 
 class PairArrays(KeepsReadOnly):
@@ -43,8 +43,7 @@ class PairArrays(KeepsReadOnly):
     bodies : (n, 2) array of int
         Numbers of the two bodies, in the world's order.
     distance, lower_bound, upper_bound : (n,) arrays
-        The lower bound is that of the signed distance: -inf of a body that is inside the other's
-        material, whose wall the distance is.
+        Of a body that is inside the other's material those of the wall around it.
     order : (n,) array
         The distances by which the nearest is told: -inf where one body is inside the other's
         material.
@@ -86,12 +85,18 @@ class PairArrays(KeepsReadOnly):
 
     @property
     def order(self) -> Array:
-        inside = self._all.state.ints[self._rows, W.I_STATUS] == Status.CONTAINED.value
-        return np.where(inside, -np.inf, self.distance)
+        return np.where(self._inside, -np.inf, self.distance)
+
+    @property
+    def _inside(self) -> NDArray[np.bool_]:
+        status = self._all.state.ints[self._rows, W.I_STATUS]
+        return np.asarray(status == Status.CONTAINED.value)
 
     @property
     def lower_bound(self) -> Array:
-        return self._all.lower_bounds(self._rows)
+        # what is known of a body inside another's material is of no signed distance
+        bounds = self._all.lower_bounds(self._rows)
+        return np.where(self._inside, self._column(LOWER_BOUND), bounds)
 
     @property
     def upper_bound(self) -> Array:

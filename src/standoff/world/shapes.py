@@ -17,8 +17,8 @@ from standoff.tracking.cold_query import Queried
 
 Array = NDArray[np.float64]
 
-Shape: TypeAlias = "Body | Queried[Any]"
-"""A `Body`, `Solid` or `PlanarSolid`."""
+Shape: TypeAlias = Any
+"""A `Body`, `Solid` or `PlanarSolid`: what a world asks of one depends on which it is."""
 
 
 def as_shape(given: Any) -> Shape | None:
@@ -40,7 +40,7 @@ def is_solid(shape: Shape) -> bool:
 
 def dimension_of_shape(shape: Shape) -> int:
     """2 of a planar one, 3 of a spatial one."""
-    return int(getattr(shape, "dimension", 3))
+    return int(shape.dimension)
 
 
 def is_flat(shape: Shape) -> bool:
@@ -55,7 +55,7 @@ def boundary_of(shape: Shape) -> Any:
 
 def is_bounded(shape: Shape) -> bool:
     """Is it no half-space?"""
-    return bool(getattr(boundary_of(shape), "bounded", True))
+    return bool(shape.bounded)
 
 
 def box_of(shape: Shape) -> tuple[Array, Array, float]:
@@ -65,7 +65,7 @@ def box_of(shape: Shape) -> tuple[Array, Array, float]:
     if outline is not None:
         low, high = np.zeros((2, 3))
         low[:2], high[:2] = outline.low, outline.high
-        return 0.5 * (low + high), 0.5 * (high - low), float(shape.slack)  # type: ignore[union-attr]
+        return 0.5 * (low + high), 0.5 * (high - low), float(shape.slack)
     reals = boundary_of(shape).reals
     centre, half = (reals[at : at + 3] for at in (L.BOX_CENTRE, L.BOX_HALF))
     return centre, half, float(reals[L.RADIUS] + reals[L.SLACK])
@@ -74,5 +74,5 @@ def box_of(shape: Shape) -> tuple[Array, Array, float]:
 def slack_of(shape: Shape) -> float:
     """How far its boundary may be from what it stands for, length."""
     if is_solid(shape):
-        return float(shape.slack)  # type: ignore[union-attr]
+        return float(shape.slack)
     return float(boundary_of(shape).reals[L.SLACK])

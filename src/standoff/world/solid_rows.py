@@ -75,8 +75,10 @@ class SolidRows:
 
     def ask(self, asking: Ints, fates: Ints) -> None:
         """Ask some of the rows; those beyond their horizon are far."""
-        for k in asking.tolist():
+        for done, k in enumerate(asking.tolist(), 1):
             found = self._answer(k)
+            if self.moment.progress is not None:
+                self.moment.progress(done, len(asking))
             self._note(k, found)
             far = found.status is Status.FAR
             fates[k] = W.FAR if far else W.NEW
