@@ -28,7 +28,8 @@ class Walked(NamedTuple):
     clearance : (n,) array
         Proven for all pairs, frame by frame [length].
     closest : list of str
-        The nearest pair of each frame, as "a - b"; empty where none is near.
+        The nearest pair of each frame, as "a - b"; empty where none is near. Where one body is
+        inside the other's material the pair is not among them.
     distance : (n,) array
         Its distance [length]; inf where none is near.
     near : dict of names to Nearest
@@ -94,11 +95,13 @@ class LeastOfAll:
         order, names = pairs.order, pairs.names
         for k, name in enumerate(names):
             self._one(name, time, (float(order[k]), float(lowest[k])), not certified[k], answer, k)
-        k = int(np.argmin(order)) if len(names) else -1
+        # a wall around a body is no distance of the course
+        distances = np.where(np.isneginf(order), np.inf, distances)
+        k = int(np.argmin(distances)) if np.isfinite(distances).any() else -1
         self._times.append(time)
         self._clearance.append(answer.clearance)
-        self._closest.append(names[k] if names else None)
-        self._distance.append(float(distances[k]) if names else np.inf)
+        self._closest.append(names[k] if k >= 0 else None)
+        self._distance.append(float(distances[k]) if k >= 0 else np.inf)
         self._counts.append(answer.counts)
 
     def _one(

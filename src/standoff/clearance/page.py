@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from html import escape
@@ -15,7 +16,16 @@ from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.assembly import AssemblyFile, Source
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
-from standoff.clearance.report import Looked, Report, Row, Wanted, at_least, nearest_of, report_on
+from standoff.clearance.report import (
+    NO_CLEARANCE,
+    Looked,
+    Report,
+    Row,
+    Wanted,
+    at_least,
+    nearest_of,
+    report_on,
+)
 from standoff.motion import Pose
 from standoff.scene.reader import Array
 from standoff.tracking.proximity import shown_size
@@ -125,7 +135,9 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
     )
     lines = [
         f"{counted(len(report.world.bodies), 'body', 'bodies')}, {when}: {verdicts}.",
-        f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}.",
+        f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}."
+        if report.clearance > -math.inf
+        else f"Of the clearance of all pairs {NO_CLEARANCE}.",
     ]
     if report.failures:
         failing = counted(len(report.failures), "pair")

@@ -268,6 +268,8 @@ def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
         told = f"{'depth' if gap < 0.0 else 'gap'} {abs(gap):.4g} {unit}".rstrip()
         if row.verdict is Verdict.TOUCHING:
             told = "touching"
+        if row.verdict is Verdict.CONTAINED:
+            told = f"inside, wall {gap:.4g} {unit}".rstrip()
         label = f"{number}  {a} - {b}: {told}"
         handles.append(Line2D([], [], color="black", marker="o", markersize=3.5, label=label))
     return handles

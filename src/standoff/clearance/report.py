@@ -266,6 +266,10 @@ def at_least(bound: float, digits: int = 6) -> str:
     return text
 
 
+NO_CLEARANCE = "none is proven: solids overlap, or one is inside another's material"
+"""Said in place of a clearance without a bound."""
+
+
 def not_kept(required: float, lower: float) -> str:
     """Return the sentence on a clearance that is not proven: with all digits if it takes them."""
     known = at_least(lower)

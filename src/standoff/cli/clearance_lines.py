@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from rich.text import Text
 
 from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.assembly import AssemblyFile, Source
-from standoff.clearance.report import Looked, Report, Row, at_least
+from standoff.clearance.report import NO_CLEARANCE, Looked, Report, Row, at_least
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
 from standoff.cli.terminal import tell
@@ -137,7 +138,8 @@ def _tail(
         lines.append(line("far", f"{count}, proven to be {bound} or more apart"))
     told = ", ".join(f"{n} {verdict.name}" for verdict, n in report.tally().items() if n)
     lines.append(line("verdicts", told or "no pair counts"))
-    lines.append(line("clearance", f"{_clearance(report)} {unit}, proven for all pairs"))
+    told = f"{_clearance(report)} {unit}, proven for all pairs"
+    lines.append(line("clearance", told if report.clearance > -math.inf else NO_CLEARANCE))
     lines += _certified(report, looked)
     for k, (names, failure) in enumerate(report.failures):
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))
