@@ -3,12 +3,15 @@ leaves that is left is closed."""
 
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.crossing_planes import planes_apart
+from standoff.kernels.solids.over_plane import clear_of_plane
 from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
 from standoff.kernels.solids.spatial_closing import (
     LEAST,
     MET,
     OPEN,
     ROUNDING,
+    SIZE,
     TOLERANCE,
     close_leaves,
     keep_found,
@@ -16,6 +19,9 @@ from standoff.kernels.solids.spatial_closing import (
     no_pair,
 )
 from standoff.kernels.solids.spatial_pieces import leaf_box
+
+# Boxes that a pair with a plane is looked at with: when it is met, and when it is closed.
+MOST_VISITED, MOST_CLOSING = 12, 100
 
 
 @kernel
@@ -64,9 +70,23 @@ def search(a, b, best, minima, heap, room, counts):
             count = offer(a, i, b, b.own[rb + 1], best, heap, count, counts)
     for k in range(left):
         goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-        if pairs[3 * k + 2] < goal and best[MET] == 0.0:
-            counts[3] += 1
-            close_leaves(a, int(pairs[3 * k]), b, int(pairs[3 * k + 1]), best, minima, work, counts)
+        if pairs[3 * k + 2] >= goal or best[MET] > 0.0:
+            continue
+        counts[3] += 1
+        i, j = int(pairs[3 * k]), int(pairs[3 * k + 1])
+        pa, pb = S.Part(a, i, leaf_box(a, i)), S.Part(b, j, leaf_box(b, j))
+        if not left_out(pa, pb, goal, MOST_CLOSING, best, counts):
+            close_leaves(a, i, b, j, best, minima, work, counts)
+
+
+@kernel
+def left_out(a, b, goal, most, best, counts):
+    """Do two parts, one or both of a plane, hold no nearest pair nearer than `goal`?"""
+    if planes_apart(a, b, best[SIZE]):
+        return True
+    if clear_of_plane(a, b, goal, best[ROUNDING], most, counts):
+        return True
+    return clear_of_plane(b, a, goal, best[ROUNDING], most, counts)
 
 
 @kernel
@@ -74,7 +94,7 @@ def visit(a, b, key, best, minima, room, left, counts):
     """Look for nearer points in a pair of leaves, and list it; how many are listed."""
     pairs, most, _ = room
     done, low = no_pair(a, b, best[LEAST] + best[TOLERANCE], best[ROUNDING])
-    if done:
+    if done or left_out(a, b, best[LEAST] + best[TOLERANCE], MOST_VISITED, best, counts):
         return left
     q, distance = nearest_of(a, b, counts)
     keep_found(a, b, q, distance, best, minima)

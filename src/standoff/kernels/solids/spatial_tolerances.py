@@ -28,3 +28,8 @@ PARALLEL_TANGENTS: Final = 1e-9
 """Relative: area of two tangents, over their squares, below which a face has no curvature."""
 PARAMETER_SPARE: Final = 4e-16
 """Relative: two roundings of a parameter at the end of a part of a trimming curve."""
+LEAST_CROSSING: Final = 1e-3
+"""Sine of the angle of two planes below which their common line is not computed."""
+CROSSING_SPARE: Final = 1e-12
+"""Of the sizes and coordinates: how far the computed common line of two planes may be from the
+true one, some ten roundings over `LEAST_CROSSING`."""
