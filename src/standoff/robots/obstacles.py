@@ -12,7 +12,8 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose
 from standoff.robots.geoms import WORLD, Geoms
-from standoff.world.compound import Compound, name_of
+from standoff.world import Compound
+from standoff.world.pieces import name_of
 from standoff.world.shapes import as_shape
 from standoff.world.solid_pairs import refuse_solids
 

@@ -17,7 +17,7 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.robots.geoms import Geoms
 from standoff.robots.hull_gap import hull_gap
 from standoff.robots.report import EXACT, GIVEN, HULL, SKIPPED, UNSEEN, GeomReport
-from standoff.world.compound import Compound
+from standoff.world import Compound
 from standoff.world.solid_pairs import refuse_solids
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from standoff.scene.motions import Motion
 from standoff.scene.reader import Table, shown, unknown_name
 from standoff.tracking.law_options import Law
 from standoff.world import Compound, World
-from standoff.world.compound import dimension_of
+from standoff.world.pieces import dimension_of
 from standoff.world.rules import Given, Names, packed_rules
 from standoff.world.shapes import Shape
 

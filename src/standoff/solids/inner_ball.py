@@ -10,7 +10,7 @@ from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.solids.answer import Overlap
 
-HALVINGS = 20
+INWARD_STEPS = 20
 """Steps inward that are tried: the size, and its halves."""
 
 
@@ -30,7 +30,7 @@ def ball_inside(solid: Any, pose: Pose, point: Array, normal: Array) -> Overlap:
     Overlap
         Its radius is 0, and its centre the point, where none was found.
     """
-    steps = solid.size * 0.5 ** np.arange(1.0, HALVINGS + 1.0)
+    steps = solid.size * 0.5 ** np.arange(1.0, INWARD_STEPS + 1.0)
     centres = point + np.concatenate([steps, -steps])[:, None] * normal
     radii = _radii(solid, np.asarray((centres - pose.translation) @ pose.rotation))
     k = int(np.argmax(radii))

@@ -10,14 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.solids.answer import NearestPair, Overlap, SolidCounts, SolidProximity
+from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
-
-SAME_DISTANCE = 1e-10
-"""Of the sizes of both pieces: pairs of pieces whose distances differ by less are as near as each
-other, the tolerance to which distances are proven."""
 
 
 class OfPieces(NamedTuple):
@@ -127,7 +124,8 @@ def _nearest(answers: Sequence[OfPieces], beyond: float) -> OfPieces:
     """The nearest pair; of several at one distance one with a continuum, if there is one. What may
     be nearer and is open leaves it open."""
     least = min(answers, key=lambda each: each.found.distance)
-    most = least.found.distance + SAME_DISTANCE * sum(solid.size for solid in least.solids)
+    # nearer to each other than they are proven to: as near as each other
+    most = least.found.distance + PROOF_TOLERANCE * sum(solid.size for solid in least.solids)
     tied = [each for each in answers if each.found.distance <= most]
     nearest = next((each for each in tied if each.found.continuum), least)
     found = nearest.found

@@ -6,7 +6,7 @@ from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
     from standoff.world.answer import WorldAnswer
-    from standoff.world.compound import Compound, compound
+    from standoff.world.compounds import Compound, compound
     from standoff.world.impact import WorldImpact
     from standoff.world.pair_answer import PairAnswer
     from standoff.world.pair_arrays import PairArrays
@@ -18,7 +18,7 @@ else:
         __name__,
         {
             "standoff.world.answer": ("WorldAnswer",),
-            "standoff.world.compound": ("Compound", "compound"),
+            "standoff.world.compounds": ("Compound", "compound"),
             "standoff.world.impact": ("WorldImpact",),
             "standoff.world.pair_answer": ("PairAnswer",),
             "standoff.world.pair_arrays": ("PairArrays",),

@@ -20,7 +20,8 @@ from standoff.world.broad_phase import (
 )
 from standoff.world.carried import carried_pieces, carried_rows, carried_table
 from standoff.world.model import Model
-from standoff.world.narrow_phase import Asked, Moment, Refused, ask
+from standoff.world.moment import Moment
+from standoff.world.narrow_phase import Asked, Refused, ask
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
 from standoff.world.state import NO_SOLIDS, SolidAnswers, Tree, WorldCounts, WorldState
 

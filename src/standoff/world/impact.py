@@ -18,8 +18,8 @@ from standoff.motion.moving import MotionLike, moving
 from standoff.motion.paths import Fixed, Offset
 from standoff.motion.pose import Pose
 from standoff.tracking.inputs import matrix_and_mark
-from standoff.world.compound import Compound
 from standoff.world.model import Model
+from standoff.world.pieces import PieceUnion
 from standoff.world.poses import check_level, check_names
 from standoff.world.solid_pairs import refuse_solids
 from standoff.world.swept import Follower, meetings
@@ -151,7 +151,7 @@ class _Part(NamedTuple):
 def _parts(world: Model, name: str, path: Any, times: tuple[float, float]) -> list[_Part]:
     body: Any = world.listed[world.names.bodies[name]][1]
     with _named(f"paths[{name!r}]"):
-        if not isinstance(body, Compound):
+        if not isinstance(body, PieceUnion):
             return [_Part(name, "", Follower(body, path, *times))]
         return [
             _Part(name, part, Follower(piece.body, Offset(path, piece.pose), *times))

@@ -10,10 +10,10 @@ import numpy as np
 from standoff.motion import PoseLike
 from standoff.tracking.law_options import Law
 from standoff.world.broad_phase import Search
-from standoff.world.compound import check_in_plane, dimension_of
 from standoff.world.given import BodyLike, fixed_poses_of, named_pieces
 from standoff.world.model import Model
 from standoff.world.packed import packed_laws, packed_pieces, pieces_of
+from standoff.world.pieces import check_in_plane, dimension_of
 from standoff.world.poses import check_level
 from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
 from standoff.world.solid_pairs import solid_pairs

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.world.broad_phase import Search
-from standoff.world.compound import Compound
 from standoff.world.packed import PackedLaws
+from standoff.world.pieces import PieceUnion
 from standoff.world.rules import Names
 from standoff.world.shapes import Shape
 from standoff.world.solid_pairs import SolidPairs
@@ -41,7 +41,7 @@ class Model(NamedTuple):
     """
 
     key: str
-    listed: tuple[tuple[str, Shape | Compound], ...]
+    listed: tuple[tuple[str, Shape | PieceUnion], ...]
     names: Names
     moving: tuple[str, ...]
     fixed: tuple[str, ...]

@@ -11,9 +11,9 @@ from standoff.kernels.entries import world as kernels
 from standoff.kernels.entries import world_answers
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
-from standoff.progress import Progress
 from standoff.tracking.threads import in_parts
 from standoff.world.broad_phase import Placed, Table
+from standoff.world.moment import Moment
 from standoff.world.packed import PackedLaws, PackedPieces
 from standoff.world.state import IN_PAGE, NO_SOLIDS, PAGE, SolidAnswers
 
@@ -23,38 +23,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 NUMBER = np.dtype(np.float64).itemsize
-
-
-class Moment(NamedTuple):
-    """A frame's place in time, and what else its answers are made with.
-
-    Attributes
-    ----------
-    frame : int
-        Its number.
-    time, dt : float
-        Since the start, and since the frame before, s.
-    twists : (n, 9) array
-        Of each body: (v, omega) and its origin, world axes.
-    has_twist : bool
-    may_rest : bool
-        May answers of the frame before be kept where nothing has moved?
-    minima : float
-        All minima below it are asked, length.
-    workers : int
-    progress : callable, optional
-        Told how many pairs with a solid are done, and of how many.
-    """
-
-    frame: int
-    time: float
-    dt: float
-    twists: Array
-    has_twist: bool
-    may_rest: bool
-    minima: float
-    workers: int
-    progress: Progress | None = None
 
 
 class Refused(Exception):

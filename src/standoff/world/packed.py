@@ -18,7 +18,7 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import kinds_of, main_kind
-from standoff.world.compound import Compound, Piece
+from standoff.world.pieces import Piece, PieceUnion
 from standoff.world.shapes import Shape, box_of, dimension_of_shape, is_bounded
 
 Array = NDArray[np.float64]
@@ -45,9 +45,9 @@ class PackedPieces(NamedTuple):
     facts: Array
 
 
-def pieces_of(body: Shape | Compound) -> tuple[Piece, ...]:
+def pieces_of(body: Shape | PieceUnion) -> tuple[Piece, ...]:
     """Those of a compound, or a body as the only one."""
-    if isinstance(body, Compound):
+    if isinstance(body, PieceUnion):
         return tuple(body.pieces.values())
     return (Piece(body, Pose.identity()),)
 

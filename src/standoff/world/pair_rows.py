@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
-from standoff.world.compound import Compound
 from standoff.world.model import Model
 from standoff.world.packed import pieces_of
 from standoff.world.pair_answer import PairAnswer, far_block, swapped
+from standoff.world.pieces import PieceUnion
 from standoff.world.state import WorldState
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ class PairRows(KeepsReadOnly):
         listed = [self.model.listed[owners[p]] for p in pieces]
         bodies = []
         for (_, body), piece in zip(listed, found.pieces, strict=True):
-            whole = not isinstance(body, Compound)
+            whole = not isinstance(body, PieceUnion)
             bodies.append(body if whole else body.pieces[piece].body if piece else body)
         names = [name for name, _ in listed]
         if turned:
@@ -142,7 +142,7 @@ class PairRows(KeepsReadOnly):
         i = int(fixed.owners[p])
         name, body = self.model.listed[i]
         k = p - int(fixed.first[i])
-        piece = list(body.pieces)[k] if isinstance(body, Compound) else ""
+        piece = list(body.pieces)[k] if isinstance(body, PieceUnion) else ""
         arm = self.state.placed[p, W.P_SHIFT : W.P_SHIFT + 3] - self.state.poses[i, :3, 3]
         return name, piece, pieces_of(body)[k].body, arm
 

@@ -13,7 +13,7 @@ from standoff.checks.names import did_you_mean
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.world.compound import Piece, name_of
+from standoff.world.pieces import Piece, name_of
 from standoff.world.shapes import is_bounded
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
-from standoff.world.compound import Compound, Piece
+from standoff.world.pieces import Piece, PieceUnion
 from standoff.world.rules import Rules
 from standoff.world.shapes import Shape, boundary_of, dimension_of_shape, is_bounded, is_solid
 
@@ -111,7 +111,7 @@ def refuse_solids(bodies: Mapping[str, Any], what: str, instead: str) -> None:
         The name of the first is told.
     """
     for name, body in bodies.items():
-        shapes = [x.body for x in body.pieces.values()] if isinstance(body, Compound) else [body]
+        shapes = [x.body for x in body.pieces.values()] if isinstance(body, PieceUnion) else [body]
         if any(is_solid(shape) for shape in shapes):
             raise StandoffError(
                 f"{what} takes convex bodies alone, and {name!r} is or has a solid: {instead}.",

@@ -19,15 +19,16 @@ from standoff.kernels.world import arrays as W
 from standoff.motion import Pose
 from standoff.solids.answer import Overlap, SolidProximity
 from standoff.solids.inner_ball import ball_inside
-from standoff.solids.of_pieces import SAME_DISTANCE, OfPieces, answer_of_pieces
+from standoff.solids.of_pieces import OfPieces, answer_of_pieces
 from standoff.solids.query import distance
+from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 from standoff.world.broad_phase import Placed, Table
-from standoff.world.compound import Compound
 from standoff.world.model import Model
-from standoff.world.narrow_phase import Moment
+from standoff.world.moment import Moment
 from standoff.world.pair_answer import gradient_of_bodies
+from standoff.world.pieces import PieceUnion
 from standoff.world.shapes import slack_of
 from standoff.world.state import PAGE, SolidAnswers
 
@@ -92,7 +93,7 @@ class SolidRows:
         doubt = self._composed(p) + self._composed(q)
         horizon = float(self.table.known[k, W.C_HORIZON])
         # more than the horizon, so that the bound of what is far is beyond it
-        more = doubt + slack_of(a) + slack_of(b) + SAME_DISTANCE * (a.size + b.size)
+        more = doubt + slack_of(a) + slack_of(b) + PROOF_TOLERANCE * (a.size + b.size)
         within = None if horizon == math.inf else horizon + more
         found = distance(a, b, self._pose(p), self._pose(q), within=within)
         return replace(
@@ -184,7 +185,7 @@ class SolidRows:
         i = int(self._owners[p])
         number = p - int(self.world.search.pieces.first[i])
         body = self.world.listed[i][1]
-        return number, list(body.pieces)[number] if isinstance(body, Compound) else ""
+        return number, list(body.pieces)[number] if isinstance(body, PieceUnion) else ""
 
     def _arm(self, p: int) -> Array:
         """From the body's origin to the piece's, world axes."""

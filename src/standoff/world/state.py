@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
@@ -170,3 +172,20 @@ class WorldState(KeepsReadOnly):
 
     def __repr__(self) -> str:
         return f"<WorldState at {self.time:.6g} s: {self.counts.open} pairs open>"
+
+
+def check_key(state: Any, key: str) -> None:
+    """Refuse what is not a state of the world with a mark.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    if not isinstance(state, WorldState):
+        raise StandoffTypeError(
+            f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
+        )
+    if state.key != key:
+        raise StandoffError(
+            "The state belongs to another world: begin with world.start.", "state", state
+        )

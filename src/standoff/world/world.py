@@ -35,7 +35,7 @@ from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
 from standoff.world.making import made_model
 from standoff.world.poses import GivenPoses, check_frames, read_poses_of, read_twists_of
 from standoff.world.rules import Given
-from standoff.world.state import WorldState
+from standoff.world.state import WorldState, check_key
 
 Array = NDArray[np.float64]
 PosesLike = Any
@@ -326,15 +326,8 @@ class World(KeepsReadOnly):
         return WorldAnswer(self.model, state)
 
     def distances(self, poses: PosesLike, progress: Progress | None = None) -> WorldAnswer:
-        """All near pairs at some poses by themselves, from nothing.
-
-        Parameters
-        ----------
-        poses
-            As in ``start``.
-        progress : callable, optional
-            Told how many pairs with a solid are done, and of how many.
-        """
+        """All near pairs at some poses by themselves, from nothing; `progress` is told how many
+        pairs with a solid are done, and of how many."""
         given = self._read(poses)
         state = started_state(self.model, given, self._twists(None, given), progress)
         return WorldAnswer(self.model, state)
@@ -375,14 +368,7 @@ class World(KeepsReadOnly):
         ------
         TypeError, ValueError
         """
-        if not isinstance(state, WorldState):
-            raise StandoffTypeError(
-                f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
-            )
-        if state.key != self.model.key:
-            raise StandoffError(
-                "The state belongs to another world: begin with world.start.", "state", state
-            )
+        check_key(state, self.model.key)
 
     def _frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the law to be stable."""

@@ -1,4 +1,4 @@
-"""Rigid bodies of several pieces."""
+"""Rigid bodies of several pieces: what they are, below what asks them."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ PieceLike: TypeAlias = "Shape | Piece | tuple[Shape, PoseLike]"
 """A body or a solid in its place, or with its pose in the compound's frame."""
 
 
-class Compound(KeepsReadOnly):
-    """A rigid body of several pieces with fixed placements: their union.
+class PieceUnion(KeepsReadOnly):
+    """A rigid body of several pieces with fixed placements: what a world reads of a `Compound`.
 
     Attributes
     ----------
@@ -64,53 +64,11 @@ class Compound(KeepsReadOnly):
             check_in_plane(found)
         self.pieces = {name: Piece(x.body, _exact(x.pose, planar)) for name, x in found.items()}
 
-    def cold_query(
-        self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
-    ) -> Any:
-        """The distance of two bodies, one of them this one; see ``so.distance``.
-
-        Parameters
-        ----------
-        a, b : Compound, Body, Solid or PlanarSolid
-        pose_a, pose_b : Pose or what ``Pose.of`` reads
-        within : float or None
-            Horizon, length.
-
-        Returns
-        -------
-        PairAnswer, or SolidProximity where a piece of them is a solid
-        """
-        from standoff.world.cold_pair import cold_answer
-
-        return cold_answer(a, b, pose_a, pose_b, within)
-
     def __len__(self) -> int:
         return len(self.pieces)
 
     def __repr__(self) -> str:
         return f"<Compound of {counted(len(self), 'piece')}: {', '.join(self.pieces)}>"
-
-
-def compound(pieces: Mapping[str, PieceLike]) -> Compound:
-    """A rigid body of several pieces with fixed placements.
-
-    Parameters
-    ----------
-    pieces : mapping of str to Body, Solid or PlanarSolid, or to one with its pose
-        By name; a piece without a pose has the compound's frame for its own.
-
-    Returns
-    -------
-    Compound
-
-    Raises
-    ------
-    TypeError
-        Not a mapping, a name that is no string, a piece that is no body and no solid.
-    ValueError
-        No piece, no pose, planar pieces among spatial ones, a planar piece out of z = 0.
-    """
-    return Compound(pieces)
 
 
 def is_mapping(given: Any) -> bool:
