@@ -107,8 +107,8 @@ outward, for instance of a side that is a single point."""
 
 NET_ROUNDING: Final = 64.0 * float(np.finfo(np.float64).eps)
 """Control points of a part of a Bezier patch are rounded by this (relative to the greatest number
-of their net): twice nine levels of blossoms, two roundings each, and the sums of two matrix
-products."""
+of their net): in each of two directions nine levels of basis functions, two roundings each, their
+sums of at most ten products, and the sum of a matrix product."""
 
 SPAN_ROUNDING: Final = 4.0 * float(np.finfo(np.float64).eps)
 """Ends of a part of a span are moved outward by this (a fraction of the span): they are rounded
