@@ -13,7 +13,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.tolerances import INFLECTION, STRAIGHT_PCURVE
+from standoff.geometry.tolerances import BEND_ROUNDOFF, INFLECTION, STRAIGHT_PCURVE
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet, pcurve_jets
@@ -141,7 +141,9 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
         return float(np.linalg.det(np.array(piece.homogeneous(t))))
 
     ts = np.linspace(first, last, 16 * len(piece.matrix))
-    bends = np.linalg.det(piece.homogeneous_at(ts))
+    rows = piece.homogeneous_at(ts)
+    bends = np.linalg.det(rows)
+    bends[np.abs(bends) <= _bend_roundoff(piece, rows)] = 0.0
     bends[np.abs(bends) <= STRAIGHT_PCURVE * np.abs(bends).max(initial=0.0)] = 0.0
     cuts = [
         float(scipy.optimize.brentq(bend, ts[k], ts[k + 1], xtol=INFLECTION))
@@ -150,6 +152,16 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
     ]
     parts = [_part(piece, a, b) for a, b in pairwise([first, *cuts, last]) if a < b]
     return [q for p in parts for q in _halved(p)]
+
+
+def _bend_roundoff(piece: BezierPcurve, rows: Array) -> Array:
+    """(n,) roundoff of the determinants of homogeneous jets (n, 3, 3): that of the derivatives is a
+    share of what control points of this size may have, however straight the curve is."""
+    degree, width = len(piece.matrix) - 1, piece.last - piece.first
+    first = degree / width * float(np.abs(piece.matrix).max())
+    second = degree / width * first
+    h, ht, htt = np.linalg.norm(rows, axis=2).T
+    return np.asarray(BEND_ROUNDOFF * h * (ht * second + first * htt))
 
 
 def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
