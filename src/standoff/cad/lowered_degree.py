@@ -24,9 +24,10 @@ Net = tuple[Array, Array | None, Array, Array, float]
 def lowered(points: Array, weights: Array | None, knots_u: Array, knots_v: Array) -> Net:
     """(points, weights, knots_u, knots_v, moved) of a spline of degrees that the kernels have.
 
-    Each span is cut into as many equal parts as it needs and interpolated at Chebyshev points, sides included, so that
-    neighbours keep their common side. `moved` is a bound of how far it is from the given one,
-    length: from the differences of the Bernstein coefficients, which enclose that of the surfaces.
+    Each span is cut into as many equal parts as it needs and interpolated at Chebyshev points,
+    sides included, so that neighbours keep their common side. `moved` is a bound of how far it is
+    from the given one, length: from the differences of the Bernstein coefficients, which enclose
+    that of the surfaces.
     """
     w = np.ones(points.shape[:2]) if weights is None else weights
     h = np.concatenate([points * w[..., None], w[..., None]], axis=2)

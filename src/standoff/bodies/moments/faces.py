@@ -145,15 +145,14 @@ def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array])
     times = np.linspace(first, last, SAMPLES)
     cuts = [first, last]
     for axis, values in enumerate((u, v)):
-        for level in breaks[axis]:
-            away = values - level
-            for k in np.flatnonzero(away[:-1] * away[1:] < 0.0):
+        away = values[:, None] - breaks[axis]
+        for k, m in np.argwhere(away[:-1] * away[1:] < 0.0):
 
-                def miss(t: float, axis: int = axis, level: float = level) -> float:
-                    return float(curve.parameters(np.array([t]))[axis, 0] - level)
+            def miss(t: float, axis: int = axis, level: float = breaks[axis][m]) -> float:
+                return float(curve.parameters(np.array([t]))[axis, 0] - level)
 
-                cuts.append(float(scipy.optimize.brentq(miss, times[k], times[k + 1])))
-            cuts += [float(times[k]) for k in np.flatnonzero(np.abs(away[1:-1]) == 0.0) + 1]
+            cuts.append(float(scipy.optimize.brentq(miss, times[k], times[k + 1])))
+        cuts += times[1:-1][(away[1:-1] == 0.0).any(axis=1)].tolist()
     return [float(t) for t in np.unique(cuts)]
 
 
