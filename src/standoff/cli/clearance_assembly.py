@@ -12,10 +12,11 @@ from standoff.clearance.facts import report_facts
 from standoff.clearance.fits import load_fits
 from standoff.clearance.report import Looked, Report, Wanted
 from standoff.cli.arguments import ClearanceCommand
+from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
-from standoff.cli.output import Writer, kind_of_picture, write_whole
+from standoff.cli.output import write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
@@ -25,7 +26,7 @@ from standoff.version import __version__
 NOTHING_MOVES = Looked(0.0, 0.0, 1)
 
 
-def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
+def run_on_assembly(command: ClearanceCommand) -> int:
     """Print the clearance of all pairs of parts; the exit code as for a scene.
 
     Raises
@@ -38,7 +39,7 @@ def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
     if command.motion or command.time is not None:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
-    wanted_files(command)
+    check_files(command)
     file, arrangement = _read(command.scene)
     within = math.inf if command.within is None else command.within
     if command.min is not None:
@@ -46,9 +47,9 @@ def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
     with progress_bar() as progress:
         answer = arrangement.distances(within, progress)
     report = assembly_report(answer, wanted)
-    write_whole(_files(command, file, report))
-    written = [path for path in (command.files.page, command.files.plot) if path is not None]
     subject: Any = file
+    write_whole(files_of(command, subject, report, NOTHING_MOVES))
+    written = [path for path in (command.files.page, command.files.plot) if path is not None]
     if command.report.json:
         tell(json_text(_facts(file, report, written)))
     else:
@@ -80,24 +81,6 @@ def _unused(name: str, parts: dict[str, Any]) -> str:
         count += 1
         found = f"{name} ({count})"
     return found
-
-
-def _files(command: ClearanceCommand, told: AssemblyFile, report: Report) -> dict[Path, Writer]:
-    files: dict[Path, Writer] = {}
-    page, plot = command.files.page, command.files.plot
-    subject: Any = told
-    if page is not None:
-        from standoff.clearance.page import page_of
-
-        text = page_of(subject, report, NOTHING_MOVES)
-        files[page] = lambda file: file.write(text.encode())
-    if plot is not None:
-        from standoff.clearance.matrix import matrix_figure
-
-        figure = matrix_figure(report, told.title, told.length_unit)
-        ending = kind_of_picture(plot)
-        files[plot] = lambda file: figure.savefig(file, format=ending)
-    return files
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:
