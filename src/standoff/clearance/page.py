@@ -83,6 +83,7 @@ def page_of(scene: Source, report: Report, looked: Looked) -> str:
         ("All pairs", "as a matrix", matrix_figure(report, scene.title, unit)),
     ]
     title = escape(printable(scene.title))
+    kind = "assembly" if isinstance(scene, AssemblyFile) else "scene"
     parts = [
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{POLICY}',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -92,10 +93,14 @@ def page_of(scene: Source, report: Report, looked: Looked) -> str:
         _table(report, unit, timed=looked.frames > 1),
         _fits(report, unit),
         *(_picture(heading, told, figure) for heading, told, figure in figures),
-        f"<footer>Standoff {__version__}, scene {escape(printable(scene.file.name))}. The bounds "
-        "are proven; lengths are in the scene's unit.</footer></body></html>",
+        f"<footer>Standoff {__version__}, {kind} {escape(printable(scene.file.name))}. The bounds "
+        f"are proven; lengths are in {_unit_told(unit, kind)}.</footer></body></html>",
     ]
     return "\n".join(parts) + "\n"
+
+
+def _unit_told(unit: str, kind: str) -> str:
+    return escape(unit) if unit else f"the {kind}'s unit"
 
 
 def _pictured(scene: Source, report: Report, looked: Looked) -> tuple[float, Report]:

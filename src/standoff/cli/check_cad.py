@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from standoff import __version__
+from standoff.cad.files import ENDINGS
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
-
-ENDINGS = (".step", ".stp", ".p21", ".brep", ".rle", ".iges", ".igs")
 
 
 def is_cad_file(what: str) -> bool:

@@ -19,10 +19,11 @@ from standoff.clearance.report import (
     report_on,
 )
 from standoff.cli.arguments import ClearanceCommand
+from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
-from standoff.cli.output import Writer, kind_of_picture, write_whole
+from standoff.cli.output import write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
@@ -33,7 +34,7 @@ from standoff.world import World
 NOTHING_MOVES = Looked(0.0, 0.0, 1)
 
 
-def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
+def run_on_assembly(command: ClearanceCommand) -> int:
     """Print the clearance of all pairs of parts; the exit code as for a scene.
 
     Raises
@@ -46,13 +47,13 @@ def run_on_assembly(command: ClearanceCommand, wanted_files: Any) -> int:
     if command.motion or command.time is not None:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
-    wanted_files(command)
+    check_files(command)
     file, parts = _read(command.scene)
     within = math.inf if command.within is None else command.within
     if command.min is not None:
         within = max(within, command.min)
     report = _report(file, parts, within, wanted)
-    write_whole(_files(command, file, report))
+    write_whole(files_of(command, file, report, NOTHING_MOVES))
     written = [path for path in (command.files.page, command.files.plot) if path is not None]
     if command.report.json:
         tell(json_text(_facts(file, report, written)))
@@ -87,23 +88,6 @@ def _read(path: Path) -> tuple[AssemblyFile, dict[str, Any]]:
         notes = ()
     file = AssemblyFile(path, assembly.source, assembly.unit, notes, places)
     return file, {name: part.shape for name, part in parts.items()}
-
-
-def _files(command: ClearanceCommand, told: AssemblyFile, report: Report) -> dict[Path, Writer]:
-    files: dict[Path, Writer] = {}
-    page, plot = command.files.page, command.files.plot
-    if page is not None:
-        from standoff.clearance.page import page_of
-
-        text = page_of(told, report, NOTHING_MOVES)
-        files[page] = lambda file: file.write(text.encode())
-    if plot is not None:
-        from standoff.clearance.matrix import matrix_figure
-
-        figure = matrix_figure(report, told.title, told.length_unit)
-        ending = kind_of_picture(plot)
-        files[plot] = lambda file: figure.savefig(file, format=ending)
-    return files
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:
