@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from standoff.solids.answer import (
         Continuum,
         NearestPair,
+        OpenPair,
         Overlap,
         SolidCounts,
         SolidProximity,
@@ -26,6 +27,7 @@ else:
             "standoff.solids.answer": (
                 "Continuum",
                 "NearestPair",
+                "OpenPair",
                 "Overlap",
                 "SolidCounts",
                 "SolidProximity",
@@ -45,6 +47,7 @@ __all__ = [
     "ArrangementAnswer",
     "Continuum",
     "NearestPair",
+    "OpenPair",
     "Overlap",
     "PartsAnswer",
     "PlanarSolid",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from standoff.bodies.body import Body
 from standoff.checks.arrays import finite
@@ -15,10 +15,19 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@runtime_checkable
+class Pictured(Protocol):
+    """An answer that is no `Proximity`, and makes its picture by itself: that of two solids."""
+
+    def pictured(self, a: Any, b: Any, view: tuple[float, float] | None, unit: str) -> Any:
+        """The picture of A and B, which it is the answer of, from a view or one of its own."""
+        ...
+
+
 def plot(
-    a: Body,
-    b: Body,
-    answer: Proximity,
+    a: Any,
+    b: Any,
+    answer: Proximity | Pictured,
     path: str | Path | None = None,
     *,
     view: tuple[float, float] | None = None,
@@ -29,10 +38,15 @@ def plot(
     In equal scales. The active face or edge of each body is drawn in a stronger colour, and the
     legend names it. Where the bodies overlap, both are drawn transparent.
 
+    Of solids that need not be convex there are more marks: edges by their kinds (convex, reflex,
+    smooth), every tie and local minimum that the answer has, the ends of a continuum, the ball
+    inside both in an overlap, and where the answer is not proven the pieces that are open in its
+    search. Where a solid would hide its nearest points, both are drawn transparent.
+
     Parameters
     ----------
-    a, b : Body
-    answer : Proximity
+    a, b : Body, Solid or PlanarSolid
+    answer : Proximity or SolidProximity
         Of these bodies; it holds their poses.
     path : str or path, optional
         Also write the picture there, whole or not at all: .png, .svg or .pdf.
@@ -58,6 +72,8 @@ def plot(
     OSError
         If the file cannot be written.
     """
+    if isinstance(answer, Pictured):
+        return _written(answer, (a, b), path, (view_angles(view), str(unit)))
     bodies: tuple[Any, Any] = (a, b)
     for name, body in zip("ab", bodies, strict=True):
         if not isinstance(body, Body):
@@ -80,6 +96,16 @@ def plot(
         answer.status.name,
     )
     figure = pair_figure((solid_of(a), solid_of(b)), drawn, angles, str(unit))
+    if target is not None:
+        write_picture(figure, target)
+    return figure
+
+
+def _written(answer: Pictured, pair: tuple[Any, Any], path: Any, look: tuple[Any, str]) -> Figure:
+    from standoff.bodies.drawing.files import checked_file, write_picture
+
+    target = None if path is None else checked_file(path)
+    figure: Figure = answer.pictured(*pair, *look)
     if target is not None:
         write_picture(figure, target)
     return figure

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +22,17 @@ from standoff.kernels.solids.planar_tolerances import END_OF_PIECE
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
+from standoff.solids.asked import Asked
 from standoff.solids.planar.area import area_of
 from standoff.solids.planar.loops import Loop, read_loop
 from standoff.solids.planar.nesting import check_simple, nested, oriented
 from standoff.solids.planar.of_bodies import loops_of_body
 from standoff.solids.planar.outline import Outline, packed_outline
-from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 VertexKind = Literal["convex", "reflex", "smooth"]
@@ -223,6 +228,35 @@ class PlanarSolid(KeepsReadOnly):
         """
         first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
         return planar_distance(first, second, pose_a, pose_b, Asked(within))
+
+    def plot(self, path: str | Path | None = None, *, unit: str = "") -> Figure:
+        """Draw the solid in its plane, its convex, reflex and smooth vertices told apart.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            Also write the picture there, whole or not at all: .png, .svg or .pdf.
+        unit : str
+            Label of lengths.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a string nor a Path.
+        ValueError
+            If it is empty or has a different file extension.
+        OSError
+            If the file cannot be written.
+        """
+        from standoff.solids.drawing.pictures import picture_of
+
+        return picture_of(self, path, str(unit))
 
     def signed_distance(
         self, points: Any, *, gradients: bool = False

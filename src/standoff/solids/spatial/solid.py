@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,9 @@ from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid_model import SolidModel
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class Solid(SolidModel):
@@ -101,6 +105,35 @@ class Solid(SolidModel):
         SolidProximity
         """
         return spatial_distance(a, b, pose_a, pose_b, within=within)
+
+    def plot(self, path: str | Path | None = None, *, unit: str = "") -> Figure:
+        """Draw the solid from two opposite sides, its convex, reflex and smooth edges told apart.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            Also write the picture there, whole or not at all: .png, .svg or .pdf.
+        unit : str
+            Label of lengths.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        TypeError
+            If `path` is neither a string nor a Path.
+        ValueError
+            If it is empty or has a different file extension.
+        OSError
+            If the file cannot be written.
+        """
+        from standoff.solids.drawing.pictures import picture_of
+
+        return picture_of(self, path, str(unit))
 
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside the solid or on its boundary.

@@ -32,12 +32,12 @@ def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     """Without those that were found twice."""
     kept: list[Place] = []
     for place in sorted(places, key=lambda each: each.distance):
-        if not any(_same(place, other, pair.size) for other in kept):
+        if not any(is_same(place, other, pair.size) for other in kept):
             kept.append(place)
     return kept
 
 
-def _same(place: Place, other: Place, size: float) -> bool:
+def is_same(place: Place, other: Place, size: float) -> bool:
     """Is a pair another one again, or cut off its valley by the side of a leaf?"""
     away = max(
         float(np.linalg.norm(place.point_a - other.point_a)),
