@@ -270,3 +270,14 @@ def test_the_command_ends_with_1_after_a_fault(monkeypatch, capsys):
     monkeypatch.setattr(solid_pairs, "spatial_distance", lambda *given: off(right(*given)))
     assert solid_pairs.main() == 1
     assert "witness" in capsys.readouterr().out
+
+
+def test_a_cubic_may_have_two_places_that_are_nearly_nearest():
+    """Where Newton's method from the best place of a grid led to the other one."""
+    vase = TRUTHS["vase"]
+    point = np.array([[0.6399306598117207, -0.6844676890063156, 0.760394511522376]])
+    bent = next(each for each in vase.outline.pieces if isinstance(each, Cubic))
+    spots = solid_outlines.points_of(bent, np.linspace(0.0, 1.0, 20_001))
+    rho = np.hypot(*point[0, :2])
+    least = np.hypot(spots[:, 0] - rho, spots[:, 1] - point[0, 2]).min()
+    assert abs(signed(vase, point)[0] - least) < 1e-8

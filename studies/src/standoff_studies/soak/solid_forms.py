@@ -104,14 +104,8 @@ def on_arc(row, x, y):
 
 
 @compiled
-def on_cubic(row, x, y):
-    """The nearest point: Newton's method from the best of a grid, or an end."""
-    best, t = inf, 0.0
-    for k in range(GRID):
-        px, py = cubic_at(row, k / (GRID - 1.0))
-        square = (px - x) ** 2 + (py - y) ** 2
-        if square < best:
-            best, t = square, k / (GRID - 1.0)
+def cubic_foot(row, x, y, t):
+    """The parameter of a nearest point by Newton's method, held near a place of the grid."""
     low, high = max(t - 1.0 / (GRID - 1), 0.0), min(t + 1.0 / (GRID - 1), 1.0)
     for _ in range(12):
         px, py = cubic_at(row, t)
@@ -127,11 +121,27 @@ def on_cubic(row, x, y):
         bend = dx * dx + dy * dy + ax * ddx + ay * ddy
         step = t - slope / bend if bend > 0.0 else -1.0
         t = step if low <= step <= high else 0.5 * (low + high)
-    fx, fy = cubic_at(row, t)
-    for end in (0.0, 1.0):
-        px, py = cubic_at(row, end)
-        if hypot(px - x, py - y) < hypot(fx - x, fy - y):
-            fx, fy = px, py
+    return t
+
+
+@compiled
+def on_cubic(row, x, y):
+    """The nearest point: from all places of a grid that are nearer than their neighbours."""
+    least, fx, fy = inf, 0.0, 0.0
+    before, here = inf, inf
+    for k in range(GRID + 1):
+        after = inf
+        if k < GRID:
+            px, py = cubic_at(row, k / (GRID - 1.0))
+            after = (px - x) ** 2 + (py - y) ** 2
+            if after < least and (k == 0 or k == GRID - 1):
+                least, fx, fy = after, px, py
+        if k > 0 and here <= before and here <= after:
+            px, py = cubic_at(row, cubic_foot(row, x, y, (k - 1) / (GRID - 1.0)))
+            square = (px - x) ** 2 + (py - y) ** 2
+            if square < least:
+                least, fx, fy = square, px, py
+        before, here = here, after
     return fx, fy
 
 
