@@ -14,6 +14,7 @@ from standoff_studies.soak import (
     solid_cells,
     solid_judge,
     solid_meshes,
+    solid_outlines,
     solid_pairs,
     solid_points,
 )
