@@ -12,8 +12,9 @@ from rich.table import Table
 from rich.text import Text
 
 from standoff import __version__
+from standoff.bodies.body import Body
 from standoff.cli.arguments import CheckCommand
-from standoff.cli.body_report import report_rows
+from standoff.cli.body_report import report_rows, solid_rows
 from standoff.cli.check_cad import is_cad_file, run_check_cad
 from standoff.cli.errors import ExitCode, MissingExtra
 from standoff.cli.facts import json_text
@@ -21,6 +22,7 @@ from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_
 from standoff.cli.subject import Subject, subjects
 from standoff.cli.terminal import tell
 from standoff.wording import printable
+from standoff.world.shapes import boundary_of
 
 WIDTH = 100
 """Characters of a table where stdout is not a terminal, such as a file."""
@@ -69,9 +71,8 @@ def _writer(subject: Subject, ending: str) -> Writer:
         raise MissingExtra(str(error.name)) from error
 
     def write(file: BinaryIO) -> None:
-        draw_body(subject.body, subject.body.check(), subject.name, subject.unit).savefig(
-            file, format=ending
-        )
+        body = boundary_of(subject.body)
+        draw_body(body, body.check(), subject.name, subject.unit).savefig(file, format=ending)
 
     return write
 
@@ -85,10 +86,11 @@ def _json(found: list[Subject], files: list[Path]) -> str:
 
 
 def _facts(subject: Subject) -> dict[str, Any]:
-    body = subject.body
+    body = boundary_of(subject.body)
     return {
         "body": subject.name,
         "shape": body.name,
+        "convex": isinstance(body, Body),
         "length_unit": subject.unit,
         "radius": body.radius,
         "digest": body.digest,
@@ -106,6 +108,11 @@ def _table(subject: Subject) -> Table:
         box=SIMPLE_HEAD,
         pad_edge=False,
     )
-    for what, found in report_rows(body, subject.unit):
+    rows = (
+        report_rows(body, subject.unit)
+        if isinstance(body, Body)
+        else solid_rows(body, subject.unit)
+    )
+    for what, found in rows:
         table.add_row(what, Text(printable(found)))  # as text: in markup "[unit]" is a style
     return table

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from standoff import __version__
+from standoff.cad.files import ENDINGS
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
@@ -16,8 +17,6 @@ from standoff.errors import StandoffError
 
 if TYPE_CHECKING:
     from standoff.cad import Part
-
-ENDINGS = (".step", ".stp", ".p21", ".brep", ".rle", ".iges", ".igs")
 
 MOST_NAMED = 8
 """Parts that a message names."""

@@ -30,7 +30,7 @@ class Work(NamedTuple):
 
 
 WORK = {
-    "bodies": Work("the geometry of bodies", 10, 10, 13),
+    "bodies": Work("the geometry of bodies", 10, 10, 17),
     "query": Work("queries of bodies that are apart", 20, 25, 2),
     "contact": Work("queries in contact and penetration", 12, 35, 3),
     "frames": Work("single frames", 2, 3, 5),

@@ -5,6 +5,8 @@ point's foot in the plane is on the face, and it is above it (``docs/closing.md`
 """
 
 from standoff.kernels.algebra.vectors import axpy, dot, norm, scale
+from standoff.kernels.body import layout as L
+from standoff.kernels.body.features import chart_record
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_bounds import greatest
@@ -27,8 +29,12 @@ MOST_WAITING = 24
 
 @kernel
 def is_plane_leaf(side, leaf):
+    """Of a chart with straight parameters: a turned line may be flat too."""
     r = leaf_ints(side, leaf)
-    return side.own[r + S.DIM] == 2 and side.own[r + S.NATURAL] == TORUS_THROUGH
+    if side.own[r + S.DIM] != 2 or side.own[r + S.NATURAL] != TORUS_THROUGH:
+        return False
+    c = chart_record(side.ints, side.own[r + S.CHART])
+    return side.ints[c + L.CHART_KIND] == L.PLANE
 
 
 @kernel

@@ -3,6 +3,7 @@
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.coaxial import coaxial_between, common_axis
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
     across,
@@ -14,6 +15,7 @@ from standoff.kernels.solids.spatial_minimum import (
 )
 from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
+    leaf_box,
     leaf_jet,
     leaf_reals,
     natural,
@@ -52,6 +54,8 @@ from standoff.kernels.solids.torus_potential import potential_jet
 # Pairs of boxes that wait, of 9 numbers each.
 PAIR_REALS = 9
 MOST_PAIRS = 200
+# Boxes that a potential is bounded over, of one piece: few at first, for another may do.
+FEW_BOXES, MOST_BOXES = 20, 400
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
 MARGINS = (1.0, 0.3, 3.0)
 
@@ -68,14 +72,14 @@ def held_along(part, jet, toward, u, v):
 
 
 @kernel
-def by_own_surface(goal, a, b, q, counts):
+def by_own_surface(goal, a, b, q, limit, counts):
     """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
     known, phi = natural(a.side, a.leaf)
-    return known and proven(phi, -1.0, -goal, b, q, counts)
+    return known and proven(phi, -1.0, -goal, b, q, limit, counts)
 
 
 @kernel
-def by_witness(goal, a, b, at, best, counts):
+def by_witness(goal, a, b, at, limit, best, counts):
     """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
@@ -85,7 +89,7 @@ def by_witness(goal, a, b, at, best, counts):
         return False
     x, y = ja[0], jb[0]
     here = wa == a.leaf and wb == b.leaf
-    place = (here, q, x, y)
+    place = (here, q, x, y, limit)
     if by_one(plane_between(x, y, n), goal, a, b, place, counts):
         return True
     span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
@@ -96,7 +100,14 @@ def by_witness(goal, a, b, at, best, counts):
     held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
+    turned, point, axis = common_axis(a, b, n, size)
     for k in range(3):
+        if turned:
+            known, phi = coaxial_between(
+                x, y, n, frame, (sa, sb), (point, axis), MARGINS[k] / span, size
+            )
+            if known and by_one(phi, goal, a, b, place, counts):
+                return True
         phi = torus_between(x, y, n, frame, sa, sb, MARGINS[k] / span)
         if by_one(phi, goal, a, b, place, counts):
             return True
@@ -107,7 +118,7 @@ def by_witness(goal, a, b, at, best, counts):
 def by_one(phi, goal, a, b, place, counts):
     """By one potential through points x and y, whose parameters q are those of the parts if `here`;
     each part gets half of what the potential gains beyond the goal."""
-    here, q, x, y = place
+    here, q, x, y, limit = place
     low, high = potential_jet(phi, x, 0.0)[0], potential_jet(phi, y, 0.0)[0]
     spare = 0.5 * (high - low - goal)
     if spare < 0.0:
@@ -115,9 +126,9 @@ def by_one(phi, goal, a, b, place, counts):
     pa, pb = (q[0], q[1]), (q[2], q[3])
     if not here:
         pa, pb = middle(a.box), middle(b.box)
-    if not proven(phi, 1.0, low + spare, a, pa, counts):
+    if not proven(phi, 1.0, low + spare, a, pa, limit, counts):
         return False
-    return proven(phi, -1.0, spare - high, b, pb, counts)
+    return proven(phi, -1.0, spare - high, b, pb, limit, counts)
 
 
 @kernel
@@ -212,22 +223,26 @@ def closed_by_any(a, b, best, minima, counts):
     goal, row = best[LEAST] - best[TOLERANCE] + best[ROUNDING], -1
     if best[ABOVE] > best[LEAST]:
         goal, row = local_goal(a, b, q, distance, best, minima)
-    closed = closed_to(goal, row, (a, b, q, distance), best, minima, counts)
+    pair = (a, b, q, distance)
+    closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts)
+    # a nearer place off a trim is cut away sooner than bounded
+    if not closed and distance >= goal:
+        closed = closed_to(goal, row, pair, MOST_BOXES, best, minima, counts)
     if closed:
         best[OF_LEAVES] = min(best[OF_LEAVES], goal - best[ROUNDING])
     return closed
 
 
 @kernel
-def closed_to(goal, row, pair, best, minima, counts):
-    """Do potentials prove a goal of two parts, given their local minimum and the one that the goal
-    comes from?"""
+def closed_to(goal, row, pair, limit, best, minima, counts):
+    """Do potentials prove a goal of two parts: of the surfaces themselves, through the nearest
+    points found in the pair, or through those that the goal comes from?"""
     a, b, q, distance = pair
-    if by_own_surface(goal, a, b, (q[2], q[3]), counts):
+    if by_own_surface(goal, a, b, (q[2], q[3]), limit, counts):
         return True
-    if by_own_surface(goal, b, a, (q[0], q[1]), counts):
+    if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
         return True
-    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), best, counts):
+    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), limit, best, counts):
         return True
     wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
     at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
@@ -237,7 +252,7 @@ def closed_to(goal, row, pair, best, minima, counts):
         at = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     if wa == a.leaf and wb == b.leaf and distance >= goal:
         return False
-    return by_witness(goal, a, b, (wa, wb, at), best, counts)
+    return by_witness(goal, a, b, (wa, wb, at), limit, best, counts)
 
 
 @kernel
@@ -260,11 +275,11 @@ def put_halves(a, b, best, work, count, low):
 
 
 @kernel
-def close_leaves(pair, low, best, minima, work, counts):
-    """Close a pair of leaves' parts, cutting it where it has to be; what stays open lowers
-    best[OPEN]. `low`: a bound of it."""
-    (a, leaf_a, box_a), (b, leaf_b, box_b) = pair
-    put_pair(work, 0, box_a, box_b, low)
+def close_leaves(a, b, pair, best, minima, work, counts):
+    """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
+    lowers best[OPEN]."""
+    leaf_a, leaf_b, low = pair
+    put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
     count = 1
     while count > 0 and best[MET] == 0.0:
         count -= 1

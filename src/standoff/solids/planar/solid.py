@@ -194,6 +194,11 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         return 2
 
     @property
+    def bounded(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def size(self) -> float:
         """Diagonal of the box around it, length."""
         return self.outline.size

@@ -18,7 +18,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
-from standoff.solids.spatial.analytic import natural_of, round_arc
+from standoff.solids.spatial.analytic import natural_of, round_arc, turned_axis
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
 from standoff.solids.spatial.tolerances import (
     BOX_SPARE,
@@ -38,8 +38,6 @@ LONGEST, LONGEST_CUT = 0.5, 0.12
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
 UNKNOWN = np.pi
-# What stands in place of a kind of potential for an edge that is an arc of a circle.
-ROUND_ARC = -2
 
 
 @dataclass
@@ -232,6 +230,12 @@ def edge_leaves(
     feature = boundary.n_faces + number
     bounds = curve_derivatives(curve, ranges)
     arc = isinstance(curve, ConicArc) and round_arc(curve)
+    kind = S.ROUND_ARC if arc else S.NO_KIND
+    axis = turned_axis(curve)
+    if axis is not None:
+        kind = S.TURNED
+        record = np.concatenate([np.zeros(3), *axis])
+        beside = beside if np.array_equal(beside[1][3:], record[3:]) else (S.NO_KIND, record)
     found = []
     for (first, last), d, cone in zip(ranges, bounds, own, strict=True):
         x, xt, xtt = (np.array(c) for c in edge_jet(boundary.ints, boundary.reals, feature,
@@ -248,7 +252,6 @@ def edge_leaves(
         every = np.zeros(12)
         every[0], every[2], every[5], every[9] = d
         reals = _leaf_reals(np.array([first, last, 0.0, 0.0]), every, cones, beside[1])
-        kind = ROUND_ARC if arc else -1
         found.append(Leaf(1, feature, -1, False, senses, [], kind, reals, x, axes, half, beside[0]))
     return found
 

@@ -88,6 +88,16 @@ class SolidModel:
         return self.boundary.name
 
     @property
+    def dimension(self) -> int:
+        """3."""
+        return 3
+
+    @property
+    def bounded(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def size(self) -> float:
         """Diagonal of the box around it, length."""
         return self.boundary.size
