@@ -71,7 +71,7 @@ def main() -> None:
     figures = [
         so.plot(channel, pin, distance(channel, pin, STILL, at, minima=0.9), unit="mm"),
         so.plot(hole, shaft, distance(hole, shaft, STILL, beside), unit="mm"),
-        so.plot(hole, shaft, distance(hole, shaft, STILL, beside, deadline=2500), unit="mm"),
+        so.plot(hole, shaft, distance(hole, shaft, STILL, beside, deadline=4500), unit="mm"),
     ]
     images = []
     for figure in figures:

@@ -34,6 +34,8 @@ END_COLOUR, BALL_COLOUR, OPEN_COLOUR = "#AA3377", "#117733", "#CC3311"
 
 WITNESS_ORDER, END_ORDER, BALL_ORDER, OPEN_ORDER = 6.0, 7.0, 5.0, 4.0
 
+OPEN_OPACITY = 0.12
+
 SMALL = 0.008
 """Part of the picture: what is smaller gets a mark around it."""
 
@@ -44,8 +46,9 @@ END_LOOK = {"color": END_COLOUR, "marker": "D", "markersize": 5.0, "markerfaceco
 
 def draw_marks(axes: Axes, answer: SolidProximity, flat: Flat, wide: float) -> None:
     """Draw all that an answer has; `wide`: of the picture, length."""
-    for piece in answer.open:
-        for corners, (_, strong) in zip((piece.corners_a, piece.corners_b), COLOURS, strict=True):
+    for side, (_, strong) in enumerate(COLOURS):
+        pieces = [(piece.corners_a, piece.corners_b)[side] for piece in answer.open]
+        for corners in {piece.tobytes(): piece for piece in pieces}.values():
             _draw_piece(axes, flat(corners), strong, wide)
     if answer.overlap is not None:
         centre = flat(answer.overlap.common_point[None])[0]
@@ -71,7 +74,7 @@ def _draw_piece(axes: Axes, corners: Array, colour: str, wide: float) -> None:
     hull = corners
     if np.linalg.matrix_rank(corners - corners[0], tol=FLAT_BOX * wide) == 2:
         hull = corners[scipy.spatial.ConvexHull(corners).vertices]
-    look: dict[str, Any] = {"facecolor": (*to_rgb(colour), 0.25), "edgecolor": OPEN_COLOUR}
+    look: dict[str, Any] = {"facecolor": (*to_rgb(colour), OPEN_OPACITY), "edgecolor": OPEN_COLOUR}
     axes.add_patch(Polygon(hull, linewidth=0.7, zorder=OPEN_ORDER, **look))
     if float(np.ptp(corners, axis=0).max()) < SMALL * wide:
         middle = corners.mean(axis=0)

@@ -52,7 +52,8 @@ WORTH_IT = 0.05
 """By how much a view must be better than one nearer to the usual."""
 
 SHORT_AXIS = 0.45
-"""An axis of which the viewer sees less than this fraction is not named."""
+"""An axis of which the viewer sees less than this fraction, or nearer to another one, is not
+named."""
 
 LEGEND_ROW = 0.035
 """Height of a row of the legend, as a fraction of the figure."""
@@ -195,9 +196,12 @@ def finish(axes: Axes, camera: Camera, unit: str) -> None:
     arm, foot = 0.05 * wide, 0.05 * wide
     spot = camera.low - np.array([0.0, foot])
     look: dict[str, Any] = {"fontsize": "small", "ha": "center", "va": "center"}
+    named: list[Array] = []
     for name, way in zip("xyz", camera.axes[:2].T, strict=True):
         axes.plot(*np.stack([spot, spot + arm * way]).T, color="black", linewidth=1.0)
-        if np.linalg.norm(way) > SHORT_AXIS:
+        clear = all(np.linalg.norm(way - other) > SHORT_AXIS for other in named)
+        if clear and np.linalg.norm(way) > SHORT_AXIS:
+            named.append(way)
             x, y = spot + 1.4 * arm * way
             axes.text(x, y, name, **look)
     length = round_length(0.5 * wide)
