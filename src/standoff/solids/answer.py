@@ -243,28 +243,6 @@ class SolidProximity(KeepsReadOnly, PlainData):
             )
         return self.gradient_rows
 
-    def pictured(
-        self, a: Any, b: Any, view: tuple[float, float] | None = None, unit: str = ""
-    ) -> Any:
-        """The picture that ``so.plot`` makes.
-
-        Parameters
-        ----------
-        a, b : Solid, PlanarSolid, Boundary or Body
-            The solids of the answer, in its order.
-        view : (float, float), optional
-            Elevation and azimuth of the viewer, degrees.
-        unit : str, optional
-            Label of lengths.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
-        from standoff.solids.drawing.pictures import picture_of_pair
-
-        return picture_of_pair(a, b, self, view, unit)
-
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as plain data, under the attributes' names."""
         facts = {field.name: plain(getattr(self, field.name)) for field in fields(self)}
