@@ -191,6 +191,20 @@ def test_how_the_statuses_of_pieces_are_combined() -> None:
     close(so.distance(beads, block, at(0.0), at(2.7)), 0.5)
 
 
+def test_all_minima_of_several_pieces_are_kept() -> None:
+    turn = rot(np.array([0.0, 0.0, 0.4]))
+    world = so.World({"rings": RINGS, "peg": PEG}, minima=1.0)
+    answer = world.distances({"rings": at(0.0), "peg": so.Pose(turn, [0.03, 0.04, 0.0])})
+    found = answer.minima(("peg", "rings"))
+    assert [each.pieces[1] for each in found] in (["low", "high"], ["high", "low"])
+    assert [each.distance for each in found] == pytest.approx([0.05, 0.05], abs=WITHIN)
+    for each in found:
+        assert isinstance(each, SolidPairAnswer)
+        assert all(pair.pieces == each.pieces for pair in each.minima)
+        np.testing.assert_allclose(each.poses[0][9:], [0.03, 0.04, 0.0])
+    assert answer.minima(("rings", "peg"), below=0.01) == ()
+
+
 def test_a_world_tells_the_worst_first() -> None:
     world = so.World(
         {"plate": tube(1.0, 3.0, -1.0, 1.0), "pin": peg(0.9, -2.0, 2.0), "bead": ball(0.2)},
@@ -307,6 +321,8 @@ def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:
         world.time_of_impact({"socket": at(0.0), "ball": at(0.1)}, 1.0)
     with pytest.raises(TypeError, match="give a Body or a Solid"):
         so.compound({"one": 3})  # type: ignore[dict-item]
+    with pytest.raises(TypeError, match=r"'b' is \[1\]: give a Body, a Solid or a Compound"):
+        so.distance(RINGS, [1], at(0.0), at(0.0))  # type: ignore[call-overload]
     with pytest.raises(so.StandoffError, match="planar"):
         so.World(
             {
