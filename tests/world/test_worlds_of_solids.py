@@ -143,7 +143,12 @@ def test_every_pair_as_it_is_alone(rng: np.random.Generator) -> None:
                 assert alone.lower_bound >= found.lower_bound - 1e-12
                 continue
             assert found.distance == pytest.approx(alone.distance, abs=1e-8)
-            assert answer[b, a].distance == found.distance
+            back = answer[b, a]
+            assert back.distance == found.distance
+            np.testing.assert_array_equal(back.normal, -found.normal)
+            np.testing.assert_array_equal(back.point_a, found.point_b)
+            assert back.feature_b == found.feature_a
+            assert back.pieces == found.pieces[::-1]
             if isinstance(alone, SolidProximity):
                 assert found.status is alone.status
                 least = min(least, found.lower_bound)
@@ -166,6 +171,11 @@ def test_how_the_statuses_of_pieces_are_combined() -> None:
     assert found.status is so.Status.CONTAINED
     assert found.inside == "B"
     close(found, 0.3)
+    # of blocks that overlap the wall is that in the one that is thicker there
+    thick = so.compound({"left": block, "right": (block, at(0.5))})
+    found = so.distance(thick, so.compound({"one": BALL, "two": ball(0.2)}), at(0.0), at(0.5))
+    assert found.pieces == ("right", "one")
+    close(found, 0.6)
     turned = so.distance(
         so.compound({"one": ball(0.2), "two": (bead, at(3.0))}), blocks, at(0.5), at(0)
     )
