@@ -136,6 +136,37 @@ def test_the_commands_take_solids(command: Command, folder: Path) -> None:
     assert (folder / "pairs.parquet").exists()
 
 
+def test_a_body_inside_another_is_told_over_a_motion(command: Command) -> None:
+    """A stone jumps from before the ring into its material: the frame inside is the least."""
+    text = (
+        BODIES
+        + """[bodies.stone]
+shape = "ellipsoid"
+semi_axes = [0.05, 0.05, 0.05]
+[placements.stone]
+position = [1.75, 0.0, 0.0]
+[motions.stone]
+kind = "twist"
+linear = [-1.0, 0.0, 0.0]
+[world]
+only = [["ring", "stone"]]
+[track]
+step = 0.5
+duration = 0.5
+"""
+    )
+    code, told = command(text, "clearance", "--motion", "--json")
+    assert code == 0
+    (pair,) = json.loads(told)["pairs"]
+    assert pair["verdict"] == "CONTAINED"
+    assert pair["time"] == 0.5
+    assert pair["distance"] == pytest.approx(0.2, abs=1e-8)
+    code, told = command(text, "clearance", "--motion", "--min", "0.1")
+    assert code == 3
+    assert "inside the other's material" in told
+    assert "none is proven" in told
+
+
 def test_what_takes_convex_bodies_alone_says_so(command: Command, folder: Path) -> None:
     for name, arguments in (("track", ()), ("automaton", ()), ("impact", ())):
         code, told = command(PAIR + "[track]\nstep = 0.5\nduration = 1.0\n", name, *arguments)

@@ -143,7 +143,12 @@ def test_every_pair_as_it_is_alone(rng: np.random.Generator) -> None:
                 assert alone.lower_bound >= found.lower_bound - 1e-12
                 continue
             assert found.distance == pytest.approx(alone.distance, abs=1e-8)
-            assert answer[b, a].distance == found.distance
+            back = answer[b, a]
+            assert back.distance == found.distance
+            np.testing.assert_array_equal(back.normal, -found.normal)
+            np.testing.assert_array_equal(back.point_a, found.point_b)
+            assert back.feature_b == found.feature_a
+            assert back.pieces == found.pieces[::-1]
             if isinstance(alone, SolidProximity):
                 assert found.status is alone.status
                 least = min(least, found.lower_bound)
@@ -166,6 +171,11 @@ def test_how_the_statuses_of_pieces_are_combined() -> None:
     assert found.status is so.Status.CONTAINED
     assert found.inside == "B"
     close(found, 0.3)
+    # of blocks that overlap the wall is that in the one that is thicker there
+    thick = so.compound({"left": block, "right": (block, at(0.5))})
+    found = so.distance(thick, so.compound({"one": BALL, "two": ball(0.2)}), at(0.0), at(0.5))
+    assert found.pieces == ("right", "one")
+    close(found, 0.6)
     turned = so.distance(
         so.compound({"one": ball(0.2), "two": (bead, at(3.0))}), blocks, at(0.5), at(0)
     )
@@ -189,6 +199,20 @@ def test_how_the_statuses_of_pieces_are_combined() -> None:
     assert found.status is so.Status.TOUCHING
     assert found.pieces == ("two", "")
     close(so.distance(beads, block, at(0.0), at(2.7)), 0.5)
+
+
+def test_all_minima_of_several_pieces_are_kept() -> None:
+    turn = rot(np.array([0.0, 0.0, 0.4]))
+    world = so.World({"rings": RINGS, "peg": PEG}, minima=1.0)
+    answer = world.distances({"rings": at(0.0), "peg": so.Pose(turn, [0.03, 0.04, 0.0])})
+    found = answer.minima(("peg", "rings"))
+    assert [each.pieces[1] for each in found] in (["low", "high"], ["high", "low"])
+    assert [each.distance for each in found] == pytest.approx([0.05, 0.05], abs=WITHIN)
+    for each in found:
+        assert isinstance(each, SolidPairAnswer)
+        assert all(pair.pieces == each.pieces for pair in each.minima)
+        np.testing.assert_allclose(each.poses[0][9:], [0.03, 0.04, 0.0])
+    assert answer.minima(("rings", "peg"), below=0.01) == ()
 
 
 def test_a_world_tells_the_worst_first() -> None:
@@ -307,6 +331,8 @@ def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:
         world.time_of_impact({"socket": at(0.0), "ball": at(0.1)}, 1.0)
     with pytest.raises(TypeError, match="give a Body or a Solid"):
         so.compound({"one": 3})  # type: ignore[dict-item]
+    with pytest.raises(TypeError, match=r"'b' is \[1\]: give a Body, a Solid or a Compound"):
+        so.distance(RINGS, [1], at(0.0), at(0.0))  # type: ignore[call-overload]
     with pytest.raises(so.StandoffError, match="planar"):
         so.World(
             {

@@ -10,6 +10,7 @@ from typing import Any
 
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
+from standoff.world.given import checked_bodies
 from standoff.world.pair_answer import PairAnswer
 from standoff.world.pieces import PieceLike, PieceUnion
 from standoff.world.solid_answer import SolidPairAnswer
@@ -82,6 +83,7 @@ def cold_answer(
     TypeError, ValueError
         As of a `World`: no body, no pose, a planar one with a spatial one or out of its plane.
     """
+    checked_bodies({"a": a, "b": b})  # what cannot be hashed is no body either
     found = _world(a, b, within).distances({"a": pose_a, "b": pose_b})["a", "b"]
     if isinstance(found, SolidPairAnswer):
         return SolidProximity(**{x.name: getattr(found, x.name) for x in fields(SolidProximity)})

@@ -67,14 +67,15 @@ def ask(
     several = int(pieces.first[-1]) > 1
     while True:
         if solids is not None:
-            solids.ask(asking[solids.rows[asking]], fates)
-            asking = asking[~solids.rows[asking]]
+            asking = solids.ask(asking, fates)
         pages = answered(laws, pieces, frame, table, pages, moment, asking, fates)
         if not several or not kernels.due_again(
             pieces[:], frame[:], table[:], moment.minima, fates, again
         ):
             break
         asking = np.flatnonzero(again)
+        if solids is not None and solids.all_asked(asking, fates):
+            break
     found = NO_SOLIDS
     if solids is not None:
         found, pages = solids.answers(fates, pages)

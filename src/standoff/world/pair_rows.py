@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
 from standoff.world.model import Model
 from standoff.world.packed import pieces_of
-from standoff.world.pair_answer import PairAnswer, far_block, swapped
+from standoff.world.pair_answer import PairAnswer, far_block, gradient_of_bodies, swapped
 from standoff.world.pieces import PieceUnion
 from standoff.world.state import WorldState
 
@@ -85,8 +86,7 @@ class PairRows(KeepsReadOnly):
         key = int(ints[W.I_KEY])
         if key in self.state.solids.pieces:
             group = key // self.model.most**2
-            solids = self.state.solids
-            found = solids.pieces[key] if alone else solids.bodies[group]
+            found = self._alone(key, p, q) if alone else self.state.solids.bodies[group]
             return self._solid(found, (p, q), turned)
         block = np.array(self.state.block(int(ints[W.I_ROW]))[: K.N_BLOCK])
         block[K.BLOCK_POLYTOPE] = 0.0  # that is the next frame's
@@ -123,6 +123,19 @@ class PairRows(KeepsReadOnly):
             names, bodies = names[::-1], bodies[::-1]
         one, other = names
         return named_answer(found, (one, other), (*bodies,), self.state.time, turned)
+
+    def _alone(self, key: int, p: int, q: int) -> SolidProximity:
+        """The answer of two pieces, by the motions of their bodies."""
+        found = self.state.solids.pieces[key]
+        owners = self.model.search.pieces.owners
+        _, pieces, _, arms = zip(*(self._piece(each) for each in (p, q)), strict=True)
+        return replace(
+            found,
+            pieces=pieces,
+            minima=tuple(pair._replace(pieces=pieces) for pair in found.minima),
+            gradient_rows=gradient_of_bodies(found.gradient_rows, np.array(arms)),
+            poses=self._poses(int(owners[p]), int(owners[q])),
+        )
 
     def _poses(self, i: int, j: int) -> tuple[Array, Array]:
         """World poses (12,) of two bodies."""

@@ -91,6 +91,7 @@ def beyond(bound: float, poses: tuple[Array, Array]) -> SolidProximity:
         continuum=None,
         overlap=None,
         inside="",
+        open=(),
         gradient_rows=np.full(12, np.nan),
         smoothness=Smoothness.UNDEFINED,
         counts=SolidCounts(),

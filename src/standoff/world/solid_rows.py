@@ -59,6 +59,7 @@ class SolidRows:
         has = world.solids.bodies
         self.rows = has[self._owners[ints[:, W.I_A]]] | has[self._owners[ints[:, W.I_B]]]
         self._found: dict[int, SolidProximity] = {}
+        self._asked: set[int] = set()
 
     def settle(self, fates: Ints) -> None:
         """Which rows rest, whatever their status: a cold query would find the same; and which must
@@ -74,17 +75,28 @@ class SolidRows:
             elif fates[k] != W.FAR or known[k, W.C_BOUND] <= 0.0:
                 fates[k] = W.NEW
 
-    def ask(self, asking: Ints, fates: Ints) -> None:
-        """Ask some of the rows; those beyond their horizon are far."""
-        for done, k in enumerate(asking.tolist(), 1):
+    def all_asked(self, asking: Ints, fates: Ints) -> bool:
+        """Were all rows that are to be asked again found to be far in this frame?"""
+        again = np.array([k in self._asked for k in asking.tolist()], dtype=bool)
+        fates[asking[again]] = W.FAR
+        return bool(again.all())
+
+    def ask(self, asking: Ints, fates: Ints) -> Ints:
+        """Ask those of some rows that are asked as solids, each once in a frame; those beyond their
+        horizon are far. Returns the other rows."""
+        solid = self.rows[asking]
+        mine = [k for k in asking[solid].tolist() if k not in self._asked]
+        for done, k in enumerate(mine, 1):
             found = self._answer(k)
             if self.moment.progress is not None:
-                self.moment.progress(done, len(asking))
+                self.moment.progress(done, len(mine))
+            self._asked.add(k)
             self._note(k, found)
             far = found.status is Status.FAR
             fates[k] = W.FAR if far else W.NEW
             if not far:
                 self._found[int(self.table.ints[k, W.I_KEY])] = found
+        return asking[~solid]
 
     def _answer(self, k: int) -> SolidProximity:
         """A cold query; roundoff of placements is in its bounds."""

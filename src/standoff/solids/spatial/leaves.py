@@ -33,8 +33,10 @@ from standoff.solids.spatial.trims import Piece, edge_ranges
 
 # Half angle of a leaf's cone of normals, radians.
 WIDEST = 0.5
-# Parts of the size: longest side of a leaf, and of one that a trimming curve cuts.
-LONGEST, LONGEST_CUT = 0.5, 0.12
+# Of that, what a part of a turn is made to take.
+NARROW = 0.95
+# Parts of the size: longest side of a leaf, of one that a trimming curve cuts, and of such a plane.
+LONGEST, LONGEST_CUT, LONGEST_PLANE = 0.5, 0.12, 0.25
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
 UNKNOWN = np.pi
@@ -75,7 +77,8 @@ def face_leaves(
         wide = np.stack([d[:, 0] * (waiting[:, 1] - waiting[:, 0]),
                          d[:, 1] * (waiting[:, 3] - waiting[:, 2])])  # fmt: skip
         cut = np.array([len(c) > 0 for c in cuts])
-        too_long = wide.max(axis=0) > np.where(cut, LONGEST_CUT, LONGEST) * size
+        shortest = LONGEST_PLANE if chart.surface.kind == L.PLANE else LONGEST_CUT
+        too_long = wide.max(axis=0) > np.where(cut, shortest, LONGEST) * size
         split = (bounds.angle > WIDEST) | too_long
         if depth == MOST_HALVINGS:
             split[:] = False
@@ -99,8 +102,16 @@ def _started(chart: FaceChart) -> Array:
         u1 = min(u1, u0 + 2.0 * np.pi)
     breaks = chart.surface.analytic_breaks()
     us = [u0, *sorted(u for u in np.asarray(breaks[0]).tolist() if u0 < u < u1), u1]
+    if chart.surface.periodic:  # u is an angle: narrow enough at once
+        us = [u for a, b in pairwise(us) for u in _angles(a, b)] + [u1]
     vs = [v0, *sorted(v for v in np.asarray(breaks[1]).tolist() if v0 < v < v1), v1]
     return np.array([[a, b, c, d] for a, b in pairwise(us) for c, d in pairwise(vs)])
+
+
+def _angles(first: float, last: float) -> list[float]:
+    """Where parts begin whose normals fit a cone of a leaf."""
+    count = int(np.ceil((last - first) / (2.0 * NARROW * WIDEST)))
+    return [first + (last - first) * k / count for k in range(count)]
 
 
 def _on_it(

@@ -169,5 +169,6 @@ def _cone_round(cones: list[Array]) -> list[float]:
     if size <= NO_AXIS or max(c[3] for c in known) >= np.pi:
         return [0.0, 0.0, 1.0, np.pi]
     axis = axis / size
-    reach = max(float(between(axis, c[:3])) + float(c[3]) for c in known) + CONE_ROUNDINGS
+    each = np.array(known)
+    reach = float((between(axis[:, None], each[:, :3].T) + each[:, 3]).max()) + CONE_ROUNDINGS
     return [*axis, reach if reach < np.pi else np.pi]
