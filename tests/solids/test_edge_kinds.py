@@ -1,4 +1,4 @@
-"""Kinds of edges: proven by bounds of the normals, and searched from both sides where they are not."""
+"""Kinds of edges: proven by bounds of the normals, and searched from both sides where not."""
 
 from __future__ import annotations
 
