@@ -73,3 +73,29 @@ def test_edges_have_narrow_cones_of_normals() -> None:
         assert max(known) < 0.5 * np.pi
         leaves, _, _ = tree.all_leaves(solid.boundary)
         assert len(leaves) == len(solid.leaves)
+
+
+def test_a_kind_holds_of_all_vectors_in_the_cones(rng) -> None:
+    """Whatever unit vectors in the cones are taken, the sine of the turn has the sign that was
+    proven."""
+
+    def near(axis: np.ndarray, angle: float) -> np.ndarray:
+        way = np.cross(axis, rng.normal(size=3))
+        turn = angle * np.sqrt(rng.uniform())
+        return np.cos(turn) * axis + np.sin(turn) * way / np.linalg.norm(way)
+
+    decided = 0
+    for _ in range(400):
+        n, m, t = (v / np.linalg.norm(v) for v in rng.normal(size=(3, 3)))
+        angles = tuple(rng.uniform(0.0, 0.25, size=3))
+        kind = edge_kinds._kind(n, m, t, angles)
+        sines = []
+        for _ in range(40):
+            one, two, way = (near(v, a) for v, a in zip((n, m, t), angles, strict=True))
+            sines.append(float(np.cross(one, two) @ way))
+        if kind is EdgeKind.CONVEX:
+            assert min(sines) > 0.0
+        elif kind is EdgeKind.REFLEX:
+            assert max(sines) < 0.0
+        decided += kind is not None
+    assert decided > 40

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from spatial_shapes import ball, bolt, peg, prism, x, y, z
+from spatial_shapes import ball, bolt, peg, prism, tube, x, y, z
 
 import standoff as so
 from standoff.bodies import Edge, Face
@@ -88,10 +88,18 @@ def test_beyond_the_horizon_only_that_is_told() -> None:
     assert near.status is Status.CONVERGED
     assert near.distance == pytest.approx(true, abs=1e-12)
     assert distance(a, b, STILL, at, within=true).status is Status.CONVERGED
-    few = distance(a, b, STILL, at, within=1.2, deadline=1)
-    assert few.lower_bound <= true
-    assert few.status in (Status.FAR, Status.DEADLINE)
-    assert (few.status is Status.FAR) == (few.lower_bound >= 1.2)
+
+
+def test_a_horizon_that_is_not_proven_is_not_far() -> None:
+    """Of a peg in its hole no pair within the horizon is found, and little is proven before the
+    deadline."""
+    a, b = tube(0.5, 0.8, -0.6, 0.6), peg(0.45, -0.7, 0.7)
+    few = distance(a, b, STILL, STILL, within=0.04, deadline=1)
+    assert few.status is Status.DEADLINE
+    assert few.lower_bound < 0.04
+    assert few.distance == np.inf
+    assert few.open
+    assert distance(a, b, STILL, STILL, within=0.04).status is Status.FAR
 
 
 KINDS = {
