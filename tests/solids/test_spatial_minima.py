@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
-from spatial_shapes import ball, bracket, peg, prism, samples, tube
+from spatial_shapes import ball, bolt, bracket, peg, prism, samples, tube
 
 import standoff as so
 from standoff.solids import SolidProximity, distance
@@ -44,7 +44,8 @@ def well_made(answer: SolidProximity, tolerance: float) -> None:
         away = each.point_b - each.point_a
         assert np.linalg.norm(away) == pytest.approx(each.distance, abs=1e-13)
         np.testing.assert_allclose(away, each.distance * each.normal, atol=1e-9)
-        assert each.distance - 1.01 * tolerance <= each.lower_bound <= each.distance
+        proven = each.distance - each.lower_bound
+        assert 0.5 * tolerance <= proven <= 1.01 * tolerance
 
 
 def test_a_comb_over_a_plane_has_a_minimum_for_each_tooth() -> None:
@@ -117,6 +118,16 @@ def test_local_minima_are_those_of_dense_samples(seed: int) -> None:
         assert np.linalg.norm(spots[1][j] - q) < reach
 
 
+def test_local_minima_of_turned_parts_are_proven() -> None:
+    """Faces that trimming curves cut, with minima at their rims and within them."""
+    turn = Rotation.from_euler("xyz", [0.4, -0.3, 0.8]).as_matrix()
+    a, b, at = bolt(), tube(0.5, 0.8, -0.6, 0.6), so.Pose(turn, (3.2, 0.4, 2.6))
+    answer = distance(a, b, STILL, at, minima=1.5)
+    assert answer.status is Status.CONVERGED
+    well_made(answer, 1e-10 * (a.size + b.size))
+    assert len(answer.minima) > 1
+
+
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-6, 1e-12])
 def test_a_tolerance_is_what_the_distance_is_proven_to(tolerance: float) -> None:
     a, b = SLOT, ball(0.4)
@@ -156,11 +167,19 @@ def test_a_deadline_leaves_open_what_holds_the_nearest_pair(deadline: int) -> No
     assert answer.counts.open >= len(answer.open)
     bounds = [each.lower_bound for each in answer.open]
     assert bounds == sorted(bounds)
-    if answer.counts.open == len(answer.open):
-        assert any(
-            inside_box(each.corners_a, whole.point_a) and inside_box(each.corners_b, whole.point_b)
-            for each in answer.open
-        )
+
+
+def test_what_is_open_says_what_is_proven() -> None:
+    at = so.Pose(STRAIGHT, (0.9, 0.8, 1.5))
+    answer = distance(SLOT, ball(0.4), STILL, at, deadline=500)
+    assert answer.status is Status.DEADLINE
+    assert answer.counts.open == len(answer.open) > 0
+    assert all(each.corners_a.shape == each.corners_b.shape == (8, 3) for each in answer.open)
+    if np.isfinite(answer.lower_bound):
+        assert answer.open[0].lower_bound == answer.lower_bound
+    for each in answer.open:
+        spread = np.linalg.norm(each.corners_b - [0.9, 0.8, 1.5], axis=1)
+        assert spread.max() >= 0.4 - 1e-9  # a box round a part of a sphere reaches beyond it
 
 
 def test_the_deadline_is_the_same_in_the_plane() -> None:

@@ -23,9 +23,9 @@ from standoff.solids.spatial.tolerances import HAS_DIRECTION
 def local_minima(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> list[Place]:
     """All that were found, the nearest first; of each set of nearest pairs one."""
     sets: list[list[Place]] = []
-    for row in found.minima:
+    for k, row in enumerate([found.best, *found.minima]):
         place = pair.place(row, senses)
-        if not is_stationary(pair, place):
+        if k > 0 and not is_stationary(pair, place):
             continue
         mine = [
             each for each in sets if any(_is_one(pair, place, k, found.tolerance) for k in each)
