@@ -9,7 +9,14 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.solids.answer import NearestPair, Overlap, SolidCounts, SolidProximity
+from standoff.solids.answer import (
+    MOST_OPEN,
+    NearestPair,
+    OpenPair,
+    Overlap,
+    SolidCounts,
+    SolidProximity,
+)
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -135,8 +142,10 @@ def _nearest(answers: Sequence[OfPieces], beyond: float) -> OfPieces:
         if not each.found.certified and each.found.lower_bound < found.lower_bound
     ]
     if open_:
-        status = min(open_, key=lambda each: each.lower_bound).status
-        found = replace(found, status=status)
+        open_.sort(key=lambda each: each.lower_bound)
+        left = [pair for each in open_ for pair in each.open]
+        left.sort(key=lambda pair: pair.lower_bound)
+        found = replace(found, status=open_[0].status, open=tuple(left[:MOST_OPEN]))
     lower = min(beyond, *(each.found.lower_bound for each in answers))
     several = len(tied) > 1 and found.smoothness is Smoothness.SMOOTH
     smoothness = Smoothness.ONE_SIDED if several else found.smoothness
@@ -181,6 +190,7 @@ def turned(found: SolidProximity) -> SolidProximity:
         minima=tuple(map(_turned_pair, found.minima)),
         continuum=continuum,
         inside=other[found.inside],
+        open=tuple(map(_turned_open, found.open)),
         gradient_rows=np.concatenate([found.gradient_rows[6:], found.gradient_rows[:6]]),
         poses=found.poses[::-1],
         pieces=found.pieces[::-1],
@@ -199,4 +209,10 @@ def _turned_pair(pair: NearestPair) -> NearestPair:
         pair.parameters_b,
         pair.parameters_a,
         pair.pieces[::-1],
+    )
+
+
+def _turned_open(pair: OpenPair) -> OpenPair:
+    return OpenPair(
+        pair.lower_bound, pair.feature_b, pair.feature_a, pair.corners_b, pair.corners_a
     )
