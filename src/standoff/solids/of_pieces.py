@@ -9,7 +9,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.solids.answer import NearestPair, Overlap, SolidCounts, SolidProximity
+from standoff.solids.answer import NearestPair, OpenPair, Overlap, SolidCounts, SolidProximity
+from standoff.solids.spatial.left_open import LISTED
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -114,6 +115,7 @@ def _overlapping(each: OfPieces, ball_of: BallOf) -> OfPieces:
             continuum=None,
             overlap=ball,
             inside="",
+            open=(),
             gradient_rows=np.zeros(12),
             smoothness=Smoothness.UNDEFINED,
         )
@@ -129,18 +131,23 @@ def _nearest(answers: Sequence[OfPieces], beyond: float) -> OfPieces:
     tied = [each for each in answers if each.found.distance <= most]
     nearest = next((each for each in tied if each.found.continuum), least)
     found = nearest.found
-    open_ = [
+    undecided = [
         each.found
         for each in answers
         if not each.found.certified and each.found.lower_bound < found.lower_bound
     ]
-    if open_:
-        status = min(open_, key=lambda each: each.lower_bound).status
-        found = replace(found, status=status)
+    if undecided:
+        # one that may be nearer has a lower bound below the nearest's own, which is none of these
+        left = [*found.open, *(pair for each in undecided for pair in each.open)]
+        found = replace(
+            found,
+            status=min(undecided, key=lambda each: each.lower_bound).status,
+            open=tuple(sorted(left, key=lambda pair: pair.lower_bound)[:LISTED]),
+        )
     lower = min(beyond, *(each.found.lower_bound for each in answers))
     several = len(tied) > 1 and found.smoothness is Smoothness.SMOOTH
     smoothness = Smoothness.ONE_SIDED if several else found.smoothness
-    if open_ and lower <= 0.0:
+    if undecided and lower <= 0.0:
         smoothness = Smoothness.UNDEFINED
     others = (each for each in tied if each is not nearest)
     minima = tuple(pair for each in (nearest, *others) for pair in each.found.minima)
@@ -181,6 +188,10 @@ def turned(found: SolidProximity) -> SolidProximity:
         minima=tuple(map(_turned_pair, found.minima)),
         continuum=continuum,
         inside=other[found.inside],
+        open=tuple(
+            OpenPair(x.lower_bound, x.feature_b, x.feature_a, x.corners_b, x.corners_a)
+            for x in found.open
+        ),
         gradient_rows=np.concatenate([found.gradient_rows[6:], found.gradient_rows[:6]]),
         poses=found.poses[::-1],
         pieces=found.pieces[::-1],
