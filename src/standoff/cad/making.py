@@ -135,6 +135,11 @@ def _check(shape: Any, size: float) -> None:
             if at
             else "it is a closed shell, but no solid; heal=True makes it one"
         )
+    if volume_of(shape) < 0.0:
+        raise Refused(
+            f"it is inside out: {len(faces)} faces, from face 1 (a {kind_of(faces[0])}) on, face "
+            "into the solid; reverse its shell where it is made (OpenCASCADE: shape.Reversed())"
+        )
     faults = faults_of(shape)
     if faults:
         raise Refused("; ".join(faults[:MOST_NAMED]))

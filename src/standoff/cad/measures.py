@@ -43,13 +43,14 @@ def area_of(shape: Any, adaptive: bool = False) -> float:
 
 
 def volume_of(shape: Any, adaptive: bool = False) -> float:
-    """The same of the volume."""
+    """The volume by one of two rules: of a fixed number of points, or that of Gauss and Kronrod in
+    each span. It is negative for a solid that is inside out."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     found = GProp_GProps()
     if adaptive:
-        BRepGProp.VolumeProperties_s(shape, found, QUADRATURE, False, False)
+        BRepGProp.VolumePropertiesGK_s(shape, found, QUADRATURE, False, True, False, False, False)
     else:
         BRepGProp.VolumeProperties_s(shape, found, False, False, False)
     return float(found.Mass())
