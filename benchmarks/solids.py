@@ -14,7 +14,8 @@ import numpy as np
 
 from standoff.bodies import Edge, Face
 from standoff.geometry import ConicArc, Cylinder, Plane
-from standoff.solids.spatial import Solid, spatial_distance
+from standoff.solids import Solid
+from standoff.solids.spatial.distance import spatial_distance
 
 GAPS = (1.0, 0.1, 1e-2, 1e-3, 1e-6)
 AXES = np.eye(3)

@@ -9,11 +9,19 @@ from scipy.spatial import cKDTree
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
-from standoff_studies.soak import solid_judge, solid_pairs, solid_points
+from standoff_studies.soak import (
+    blocks,
+    solid_cells,
+    solid_judge,
+    solid_meshes,
+    solid_outlines,
+    solid_pairs,
+    solid_points,
+)
 from standoff_studies.soak.solid_judge import NOISE
 from standoff_studies.soak.solid_outlines import Arc, Cubic, Outline, Segment, polygon
 from standoff_studies.soak.solid_poses import draw_poses
-from standoff_studies.soak.solid_truth import Egg, Elbow, Hollowed, Swept, Turned
+from standoff_studies.soak.solid_truth import Egg, Elbow, Hollowed, Swept, Turned, signed
 
 PAIR = "drum", "plate"
 
@@ -52,7 +60,8 @@ def covered(truth):
     for patch in truth.patches:
         boxes = np.array([[0.5, 0.5, 0.5, 0.5]])
         while len(boxes):
-            at, radius = patch.cells(*boxes.T)
+            found = solid_cells.cells_of(truth.form, patch, boxes)
+            at, radius = found[:, :3], found[:, 3]
             points.append(at[(radius >= 0.0) & (radius <= FINE)])
             u, v, du, dv = boxes[radius > FINE].T
             halves = [(u + s * du / 2, v + t * dv / 2, du / 2, dv / 2)
@@ -65,14 +74,14 @@ def covered(truth):
 def test_closed_forms_are_distances_from_their_own_boundaries(name, rng):
     truth = TRUTHS[name]
     boundary = covered(truth)
-    assert np.abs(truth.signed(boundary)).max() < 1e-13
+    assert np.abs(signed(truth, boundary)).max() < 1e-13
     low, high = boundary.min(axis=0) - 0.2, boundary.max(axis=0) + 0.2
     points = rng.uniform(low, high, (400, 3))
     sampled, _ = cKDTree(boundary).query(points)
-    excess = sampled - np.abs(truth.signed(points))
+    excess = sampled - np.abs(signed(truth, points))
     assert excess.min() > -1e-12  # a sample is never nearer than the closed form says
     assert excess.max() < FINE  # and the cells cover the boundary
-    assert (truth.signed(points) < 0.0).any()
+    assert (signed(truth, points) < 0.0).any()
 
 
 @pytest.mark.parametrize("name", TRUTHS)
@@ -82,19 +91,42 @@ def test_sides_are_those_of_a_path_from_outside(name, rng):
     for way in rng.normal(size=(5, 3)):
         line = np.linspace(-3.0, 3.0, 6001)[:, None] * way / np.linalg.norm(way)
         line = line + 0.3 * rng.normal(size=3)
-        signed = truth.signed(line)
-        assert signed[0] > 0.0
-        assert np.abs(np.diff(signed)).max() < 1e-3 * (1.0 + 1e-9)
+        told = signed(truth, line)
+        assert told[0] > 0.0
+        assert np.abs(np.diff(told)).max() < 1e-3 * (1.0 + 1e-9)
+
+
+def test_an_egg_is_sharp_beside_its_planes_of_symmetry():
+    """Inside the focal curve the nearest point leaves the plane of the longer semiaxes."""
+    a, b, c = 0.5, 0.35, 0.25
+    egg = Egg(np.array([a, b, c]))
+    x, y = 0.1, 0.05
+    foot = a**2 * x / (a**2 - c**2), b**2 * y / (b**2 - c**2)
+    z = c * np.sqrt(1.0 - (foot[0] / a) ** 2 - (foot[1] / b) ** 2)
+    depth = np.hypot(np.hypot(foot[0] - x, foot[1] - y), z)
+    points = np.array([[x, y, off] for off in (0.0, 1e-300, 1e-17, 1e-15, 1e-13)])
+    assert np.abs(signed(egg, points) + depth).max() < 1e-12
+    beside = signed(egg, np.array([[x, y, 1e-6]]))[0]
+    assert abs(beside + depth - 1e-6 * z / depth) < 1e-11
+
+
+@pytest.mark.parametrize(("inside", "far"), [(True, 0.7), (False, 1.6)])
+def test_windings_of_a_mesh(inside, far):
+    """A cube: solid angles, and the distance from its faces, edges and corners."""
+    corners = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1], indexing="ij")).reshape(3, -1).T
+    sides = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    rows = [row for a, b, c, d in sides for row in ((a, b, c), (a, c, d))]
+    cube = corners[np.array(rows)].astype(float)
+    points = far * np.array([[1.0, 0.2, -0.3], [1.0, 1.0, 0.1], [-1.0, 1.0, 1.0]])
+    windings, lengths = solid_meshes.windings_and_distances(cube, points)
+    assert np.abs(windings - inside).max() < 1e-14
+    right = 1.0 - far if inside else np.linalg.norm(np.maximum(np.abs(points) - 1.0, 0.0), axis=1)
+    assert np.abs(lengths - right).max() < 1e-15
 
 
 @pytest.fixture(scope="module")
-def stock():
-    return solid_pairs.Stock()
-
-
-@pytest.fixture(scope="module")
-def drawn(stock):
-    (a, first), (b, second) = (stock.get(name) for name in PAIR)
+def drawn():
+    (a, first), (b, second) = (solid_pairs.made(name) for name in PAIR)
     return a, b, (first, second), draw_poses(a, b, 30, np.random.default_rng(3))
 
 
@@ -122,6 +154,7 @@ def test_the_library_s_answers_are_sound(drawn, asked):
     verdict, lines = judged(drawn, asked)
     assert verdict.sound, lines
     assert verdict.poses == 30
+    assert verdict.known > 10
     names = {status for _, status in verdict.statuses}
     assert {"CONVERGED", "OVERLAPPING", "CONTINUUM"} <= names
     assert "overlap" in solid_pairs.table(verdict)
@@ -193,27 +226,59 @@ def test_a_mistake_is_found(drawn, asked, kind, status, broken):
     assert "pose_b" in lines[0]
 
 
-def test_points_are_judged(stock, rng):
-    known, solid = stock.get("drum")
+def test_points_are_judged(rng):
+    known, solid = solid_pairs.made("drum")
     points = solid_points.drawn(known, 300, rng)
     told = solid.signed_distance(points)
-    assert solid_points.compared(known, points, told).sound
+    mesh = prism_mesh(0.24, 0.4, 200)
+    verdict, wrong = solid_points.compared(known, points, told, mesh)
+    assert verdict.sound
+    assert verdict.meshed > 100
+    assert not wrong
     spare = 10.0 * NOISE * known.size
-    for name, wrong in (
+    less = solid_points.CHORD * known.size
+    for name, off in (
         ("bound", told._replace(lower_bound=told.upper_bound + spare)),
         ("side", told._replace(distance=-told.distance)),
+        ("winding", told._replace(distance=-told.distance)),
+        ("mesh", told._replace(distance=told.distance + np.sign(told.distance) * 4.0 * less)),
         ("nearest", told._replace(nearest=told.nearest + spare)),
         ("gradient", told._replace(gradient=-told.gradient)),
     ):
-        assert getattr(solid_points.compared(known, points, wrong), name) > 0
+        assert getattr(solid_points.compared(known, points, off, mesh)[0], name) > 0
+
+
+def prism_mesh(radius, high, sides):
+    """Triangles of a prism in a cylinder from z = 0."""
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    low = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle])
+    up = np.array([0.0, 0.0, high])
+    top, following = low + up, np.roll(low, -1, axis=0)
+    over = following + up
+    middles = np.zeros_like(low), np.zeros_like(low) + up
+    faces = (low, following, over), (low, over, top), (middles[0], following, low), (
+        middles[1], top, over)  # fmt: skip
+    return np.concatenate([np.stack(each, axis=1) for each in faces])
 
 
 def test_the_command_ends_with_1_after_a_fault(monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["", "--poses", "4", "--parts", "drum", "--points", "0"])
-    monkeypatch.setattr(solid_pairs, "TELL", -1.0)
+    monkeypatch.setattr("sys.argv", ["", "--poses", "4", "--parts", "drum"])
+    monkeypatch.setattr(blocks, "TELL", -1.0)
+    monkeypatch.setattr(solid_pairs, "BLOCK", 4)
     assert solid_pairs.main() == 0
-    monkeypatch.setattr(
-        solid_pairs, "spatial_distance", lambda *given: off(spatial_distance(*given))
-    )
+    assert "to block 1" in capsys.readouterr().out
+    right = spatial_distance
+    monkeypatch.setattr(solid_pairs, "spatial_distance", lambda *given: off(right(*given)))
     assert solid_pairs.main() == 1
     assert "witness" in capsys.readouterr().out
+
+
+def test_a_cubic_may_have_two_places_that_are_nearly_nearest():
+    """Where Newton's method from the best place of a grid led to the other one."""
+    vase = TRUTHS["vase"]
+    point = np.array([[0.6399306598117207, -0.6844676890063156, 0.760394511522376]])
+    bent = next(each for each in vase.outline.pieces if isinstance(each, Cubic))
+    spots = solid_outlines.points_of(bent, np.linspace(0.0, 1.0, 20_001))
+    rho = np.hypot(*point[0, :2])
+    least = np.hypot(spots[:, 0] - rho, spots[:, 1] - point[0, 2]).min()
+    assert abs(signed(vase, point)[0] - least) < 1e-8

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 from standoff.bodies import Edge, Face
+from standoff.bodies.face_leaves import face_charts
 from standoff.geometry import (
     ConicArc,
     Cylinder,
@@ -16,6 +17,7 @@ from standoff.geometry import (
     ellipsoid_patches,
 )
 from standoff.geometry.quadrics import sphere_atlas
+from standoff.kernels.entries.queries import on_face
 from standoff.solids import Solid
 
 x, y, z = np.eye(3)
@@ -126,3 +128,21 @@ def ring(major: float, minor: float) -> Solid:
         Torus(major, minor, v0=half, v1=3.0 * half),
     ]
     return Solid.from_patches(patches, name="ring")
+
+
+def samples(solid: Solid, across: int = 40) -> np.ndarray:
+    """Points (n, 3) of a solid's faces, edges and vertices, own frame."""
+    boundary = solid.boundary
+    found = [np.asarray(boundary.vertex_points).reshape(-1, 3)]
+    for chart in face_charts(boundary):
+        u0, u1, v0, v1 = chart.rectangle
+        found += [
+            chart.surface.jet(u, v)[0][None]
+            for u in np.linspace(u0, u1, across)
+            for v in np.linspace(v0, v1, across)
+            if on_face(boundary.ints, boundary.reals, chart.number, u, v)
+        ]
+    for edge in boundary.edge_parts:
+        spots = np.linspace(edge.curve.first, edge.curve.last, 100)
+        found.append(np.array([edge.curve.point(t) for t in spots]))
+    return np.vstack(found)

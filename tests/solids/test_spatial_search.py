@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
-from spatial_shapes import ball, bolt, bracket, egg, ring, tube
+from spatial_shapes import ball, bolt, bracket, egg, ring, samples, tube
 
-from standoff.bodies.face_leaves import face_charts
-from standoff.kernels.entries.queries import on_face
-from standoff.kernels.solids import spatial_closing as C
+from standoff.kernels.solids import spatial_progress as C
 from standoff.solids import Solid
 from standoff.solids.spatial import minimum
 from standoff.solids.spatial.distance import spatial_distance
@@ -24,23 +22,6 @@ SOLIDS = {
 }
 PAIRS = [("bolt", "bracket"), ("tube", "bolt"), ("bracket", "ball")]
 POSES, MORE = 5, 60
-
-
-def samples(solid: Solid, across: int = 40) -> np.ndarray:
-    boundary = solid.boundary
-    found = [np.asarray(boundary.vertex_points).reshape(-1, 3)]
-    for chart in face_charts(boundary):
-        u0, u1, v0, v1 = chart.rectangle
-        found += [
-            chart.surface.jet(u, v)[0][None]
-            for u in np.linspace(u0, u1, across)
-            for v in np.linspace(v0, v1, across)
-            if on_face(boundary.ints, boundary.reals, chart.number, u, v)
-        ]
-    for edge in boundary.edge_parts:
-        spots = np.linspace(edge.curve.first, edge.curve.last, 100)
-        found.append(np.array([edge.curve.point(t) for t in spots]))
-    return np.vstack(found)
 
 
 def judge(a: Solid, b: Solid, rng: np.random.Generator, poses: int) -> None:
@@ -100,11 +81,10 @@ def test_a_bound_that_is_false_is_never_proven(rng, monkeypatch) -> None:
 def negative_tolerance(a: Solid, b: Solid, pose: np.ndarray, beyond: float) -> float:
     """The bound that the search claims where it is asked for one beyond the distance by `beyond`,
     which is false: the least that stayed open."""
-    best = np.zeros(C.BEST_REALS)
-    best[C.LEAST], best[C.OPEN], best[C.TOLERANCE] = np.inf, np.inf, -beyond
-    best[C.SIZE], best[C.BUDGET] = a.size + b.size, 3000
-    best[C.ROUNDING] = 1e-14 * best[C.SIZE]
-    minima, counts = np.zeros(C.MINIMUM_REALS * C.MOST_MINIMA), np.zeros(8, dtype=np.int64)
+    size = a.size + b.size
+    best, minima = minimum.started(minimum.Sought(-beyond, 30_000), size, 0.0)
+    best[C.MEETING] = 0.0
+    counts = np.zeros(8, dtype=np.int64)
     room = minimum._scratch(0)
     senses = np.array([1, 1], dtype=np.int64)
     minimum.boundary_distance((a.packed, b.packed), pose, senses, best, minima, room, counts)

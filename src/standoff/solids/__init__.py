@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from standoff.solids.answer import (
         Continuum,
         NearestPair,
+        OpenPair,
         Overlap,
         SolidCounts,
         SolidProximity,
     )
-    from standoff.solids.arrangement import Arrangement, ArrangementAnswer, PartsAnswer
     from standoff.solids.boundary_file import open_boundary, save_boundary
     from standoff.solids.planar.dxf import read_dxf
     from standoff.solids.planar.solid import PlanarSolid
@@ -26,11 +26,11 @@ else:
             "standoff.solids.answer": (
                 "Continuum",
                 "NearestPair",
+                "OpenPair",
                 "Overlap",
                 "SolidCounts",
                 "SolidProximity",
             ),
-            "standoff.solids.arrangement": ("Arrangement", "ArrangementAnswer", "PartsAnswer"),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
             "standoff.solids.planar.dxf": ("read_dxf",),
             "standoff.solids.planar.solid": ("PlanarSolid",),
@@ -41,12 +41,10 @@ else:
     )
 
 __all__ = [
-    "Arrangement",
-    "ArrangementAnswer",
     "Continuum",
     "NearestPair",
+    "OpenPair",
     "Overlap",
-    "PartsAnswer",
     "PlanarSolid",
     "PointDistances",
     "Solid",

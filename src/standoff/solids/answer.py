@@ -26,7 +26,7 @@ class NearestPair(NamedTuple):
     distance : float
         Length; negative in an overlap, where moving B by -distance * normal parts this place.
     lower_bound : float
-        No two points of the two pieces of boundary around it are proven to be closer.
+        Proven: no two points of the two pieces of boundary around it are closer.
     point_a, point_b : (3,) arrays
         World axes.
     normal : (3,) array
@@ -34,6 +34,8 @@ class NearestPair(NamedTuple):
     feature_a, feature_b : Feature
     parameters_a, parameters_b : tuple of float
         As those of a `Proximity`.
+    pieces : (str, str)
+        Of compounds the pieces that the features are of, by name; empty for single bodies.
     """
 
     distance: float
@@ -45,6 +47,7 @@ class NearestPair(NamedTuple):
     feature_b: Feature
     parameters_a: tuple[float, ...]
     parameters_b: tuple[float, ...]
+    pieces: tuple[str, str] = ("", "")
 
 
 class Continuum(NamedTuple):
@@ -79,13 +82,35 @@ class Overlap(NamedTuple):
     radius: float
 
 
+class OpenPair(NamedTuple):
+    """Two pieces of boundary of which a search could not prove what was asked.
+
+    Attributes
+    ----------
+    lower_bound : float
+        How far they are apart, at least, length; less than what was to be proven.
+    feature_a, feature_b : Feature
+        What the pieces belong to; none where a piece reaches over several.
+    corners_a, corners_b : (n, 3) arrays
+        Of a box around each piece, world axes: 8 in space, 4 in the plane, in the order of a
+        binary count (z runs fastest).
+    """
+
+    lower_bound: float
+    feature_a: Feature
+    feature_b: Feature
+    corners_a: Array
+    corners_b: Array
+
+
 class SolidCounts(NamedTuple):
     """What an answer took.
 
     Attributes
     ----------
     evaluations : int
-        Points and jets of the boundaries that were computed.
+        Of points and of bounds, which `deadline` limits: points of the boundaries (with their
+        derivatives), pairs of boxes, and boxes of potentials, each counted once.
     node_pairs : int
         Pairs of boxes whose distance was bounded.
     leaf_pairs : int
@@ -94,6 +119,8 @@ class SolidCounts(NamedTuple):
         Boxes that potentials were bounded over.
     bisections : int
         Pieces that were cut in two because no potential closed them whole.
+    open : int
+        Pairs of pieces that were not closed; the answer lists the nearest of them.
     """
 
     evaluations: int = 0
@@ -101,6 +128,7 @@ class SolidCounts(NamedTuple):
     leaf_pairs: int = 0
     boxes: int = 0
     bisections: int = 0
+    open: int = 0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -136,6 +164,10 @@ class SolidProximity(KeepsReadOnly, PlainData):
         With the status OVERLAPPING.
     inside : "A", "B" or ""
         Which solid is inside the other's material.
+    open : tuple of OpenPair
+        With the status WITHIN or DEADLINE: the pairs of pieces that are not closed, those with the
+        least bound first and 64 at most; ``counts.open`` says how many there are. Where the
+        boundaries meet, the pieces around the places at which they do.
     gradient_rows : (12,) array
         See `gradient`.
     smoothness : Smoothness
@@ -145,6 +177,9 @@ class SolidProximity(KeepsReadOnly, PlainData):
     counts : SolidCounts
     poses : pair of (12,) arrays
         World poses of A and B for which the answer holds: R row-major, p.
+    pieces : (str, str)
+        Of compounds the nearest pieces, by name, of which the features are; empty for single
+        bodies.
     """
 
     status: Status
@@ -163,10 +198,12 @@ class SolidProximity(KeepsReadOnly, PlainData):
     continuum: Continuum | None
     overlap: Overlap | None
     inside: Literal["A", "B", ""]
+    open: tuple[OpenPair, ...]
     gradient_rows: Array
     smoothness: Smoothness
     counts: SolidCounts
     poses: tuple[Array, Array]
+    pieces: tuple[str, str] = ("", "")
 
     @property
     def certified(self) -> bool:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from standoff.checks.numbers import positive, whole_number
-from standoff.errors import StandoffError
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
-from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.asked import DEADLINE, Asked
+from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.distance import spatial_distance
-from standoff.solids.spatial.minimum import BUDGET
 
 
 def distance(
@@ -23,7 +22,7 @@ def distance(
     within: float | None = None,
     tolerance: float | None = None,
     minima: float | None = None,
-    deadline: int | None = None,
+    deadline: int = DEADLINE,
 ) -> SolidProximity:
     """The proven distance of two solids at two poses: cold, global.
 
@@ -36,14 +35,15 @@ def distance(
     within : float, optional
         Horizon, length: of solids farther apart only that is proven, with the status FAR.
     tolerance : float, optional
-        Of planar solids: to what the distance is to be proven, length; 1e-10 of the larger size
-        by default. In space it is 1e-10 of both sizes together.
+        To what the distance is to be proven, length. By default 1e-10 of the larger size in the
+        plane, of both sizes together in space; less than some roundings is raised to these.
     minima : float, optional
-        Of planar solids: keep all local minima of the distance below this one, length. In space
-        all pairs at the least distance are kept.
+        Keep all local minima of the distance below this one that are found, length. Each is one to
+        first order, and its `lower_bound` is that of the pieces of boundary around it.
     deadline : int, optional
-        Most evaluations of points and jets; 4 million by default. In space, most boxes that
-        potentials are bounded over; 400,000 by default.
+        Most evaluations of points and of bounds, as ``counts.evaluations`` tells them: points of
+        the boundaries, pairs of boxes, and boxes of potentials, each counted once. What is then
+        open stays an interval, with the status DEADLINE.
 
     Returns
     -------
@@ -54,22 +54,25 @@ def distance(
     TypeError
         Neither a solid nor a body.
     ValueError
-        No pose, one out of the plane, a number that is not positive; a tolerance or minima of
-        solids in space.
+        No pose, one out of the plane, or a number that is not positive.
     """
     asked = Asked(
         None if within is None else positive(within, "within"),
         None if tolerance is None else positive(tolerance, "tolerance"),
         None if minima is None else positive(minima, "minima"),
-        None if deadline is None else whole_number(deadline, "deadline"),
+        whole_number(deadline, "deadline"),
     )
     if not (_planar(a) or _planar(b)):
-        if asked.tolerance is not None or asked.minima is not None:
-            raise StandoffError(
-                "tolerance and minima are options of planar solids: leave them out in space."
-            )
-        budget = BUDGET if asked.deadline is None else asked.deadline
-        return spatial_distance(a, b, pose_a, pose_b, evaluations=budget, within=asked.within)
+        return spatial_distance(
+            a,
+            b,
+            pose_a,
+            pose_b,
+            evaluations=asked.deadline,
+            within=asked.within,
+            tolerance=asked.tolerance,
+            minima=asked.minima,
+        )
     return planar_distance(PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b"), pose_a, pose_b, asked)
 
 

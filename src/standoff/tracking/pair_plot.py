@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from standoff.bodies.body import Body
 from standoff.checks.arrays import finite
@@ -15,10 +15,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+@runtime_checkable
+class Pictured(Protocol):
+    """What is no `Body`, and makes the picture of itself with another: a solid."""
+
+    def pictured(
+        self, a: Any, b: Any, answer: Any, view: tuple[float, float] | None, unit: str
+    ) -> Any:
+        """The picture of A and B, one of which this is, and of their answer."""
+        ...
+
+
 def plot(
-    a: Body,
-    b: Body,
-    answer: Proximity,
+    a: Any,
+    b: Any,
+    answer: Any,
     path: str | Path | None = None,
     *,
     view: tuple[float, float] | None = None,
@@ -29,10 +40,15 @@ def plot(
     In equal scales. The active face or edge of each body is drawn in a stronger colour, and the
     legend names it. Where the bodies overlap, both are drawn transparent.
 
+    Of solids that need not be convex there are more marks: edges by their kinds (convex, reflex,
+    smooth), every tie and local minimum that the answer has, the ends of a continuum, the ball
+    inside both in an overlap, and where the answer is not proven the pieces that are open in its
+    search. Where a solid would hide its nearest points, both are drawn transparent.
+
     Parameters
     ----------
-    a, b : Body
-    answer : Proximity
+    a, b : Body, Solid or PlanarSolid
+    answer : Proximity or SolidProximity
         Of these bodies; it holds their poses.
     path : str or path, optional
         Also write the picture there, whole or not at all: .png, .svg or .pdf.
@@ -58,6 +74,9 @@ def plot(
     OSError
         If the file cannot be written.
     """
+    solid = next((each for each in (a, b) if isinstance(each, Pictured)), None)
+    if solid is not None:
+        return _of_solids(solid, (a, b, answer), path, (view_angles(view), str(unit)))
     bodies: tuple[Any, Any] = (a, b)
     for name, body in zip("ab", bodies, strict=True):
         if not isinstance(body, Body):
@@ -80,6 +99,18 @@ def plot(
         answer.status.name,
     )
     figure = pair_figure((solid_of(a), solid_of(b)), drawn, angles, str(unit))
+    if target is not None:
+        write_picture(figure, target)
+    return figure
+
+
+def _of_solids(
+    solid: Pictured, asked: tuple[Any, Any, Any], path: Any, look: tuple[Any, str]
+) -> Figure:
+    from standoff.bodies.drawing.files import checked_file, write_picture
+
+    target = None if path is None else checked_file(path)
+    figure: Figure = solid.pictured(*asked, *look)
     if target is not None:
         write_picture(figure, target)
     return figure

@@ -329,7 +329,7 @@ def frame(axes: Space, cloud: Array, margin: float, towards: Array, unit: str) -
         axes.text(
             *(corner + 0.18 * half * direction), axis, fontsize="small", ha="center", va="center"
         )
-    length = _round_length(half)
+    length = round_length(half)
     end = middle + 0.98 * half * right - 0.98 * half * up + half * towards
     axes.plot(*np.stack([end - length * right, end]).T, color="black", linewidth=2.0, zorder=7)
     label = end - 0.5 * length * right + 0.04 * half * up
@@ -337,7 +337,7 @@ def frame(axes: Space, cloud: Array, margin: float, towards: Array, unit: str) -
     axes.text(*label, scale, fontsize="small", ha="center", va="bottom")
 
 
-def _round_length(half: float) -> float:
+def round_length(half: float) -> float:
     """1, 2 or 5 times a power of ten, about a third of the given length."""
     power = 10.0 ** np.floor(np.log10(half / 3.0))
     return float(max(m * power for m in (1.0, 2.0, 5.0) if m * power <= half / 3.0))

@@ -5,7 +5,6 @@ from numba import types
 from standoff.kernels.algebra.rigid import relative_pose
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INTS, READ, READ_ROWS, ROWS, WRITE, WRITE_INTS
-from standoff.kernels.pair.derivatives import write_gradient
 from standoff.kernels.solids.planar_crossings import clash
 from standoff.kernels.solids.planar_layout import Outline
 from standoff.kernels.solids.planar_overlap import largest_ball, seeded
@@ -88,15 +87,6 @@ def points(a, at, tolerance, extent, distances, inside, feet):
         feet[k, 2] = near.y
         feet[k, 3] = near.leaf
         feet[k, 4] = near.t
-
-
-@entry(READ, WRITE, work="planar")
-def gradient(arms, to):
-    """The gradient of the distance, 12 numbers, from the normal, then the arms of both witness
-    points about the solids' origins, world axes."""
-    n = (arms[0], arms[1], arms[2])
-    arm_a, arm_b = (arms[3], arms[4], arms[5]), (arms[6], arms[7], arms[8])
-    write_gradient(n, arm_a, arm_b, True, pointer(to, 0))
 
 
 @entry(OUTLINE, types.float64, types.int64, work="planar")

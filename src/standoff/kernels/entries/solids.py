@@ -3,8 +3,10 @@
 from numba import types
 
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
-from standoff.kernels.compiler.entry import INT, INTS, READ, WRITE, WRITE_INTS
+from standoff.kernels.compiler.entry import BOOL, INT, INTS, READ, WRITE, WRITE_INTS
+from standoff.kernels.pair.derivatives import write_gradient
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_closing import along
 from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid
 from standoff.kernels.solids.spatial_search import search
@@ -68,3 +70,26 @@ def nearest_in_leaves(solids, pose, leaves, values, counts):
     values[4] = distance
     on_both = on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])
     values[5] = 1.0 if on_both else 0.0
+
+
+@entry(SOLID, READ, INT, READ, WRITE, work="solids")
+def part_extents(solid, axes, leaf, box, out):
+    """Into out[:3] a part's middle point, own frame, and into out[3:6] how far it reaches from it
+    along three axes (9 numbers) at most; `box` is the part's."""
+    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    side = side_at(solid, still, S.OUTSIDE)
+    h = (0.5 * (box[1] - box[0]), 0.5 * (box[3] - box[2]))
+    jet = leaf_jet(side, leaf, 0.5 * (box[0] + box[1]), 0.5 * (box[2] + box[3]))
+    for k in range(3):
+        out[k] = jet[0][k]
+        n = (axes[3 * k], axes[3 * k + 1], axes[3 * k + 2])
+        out[3 + k] = along(side, leaf, jet, n, h)
+
+
+@entry(READ, BOOL, WRITE, work="solids")
+def gradient(arms, flat, to):
+    """The gradient of the distance, 12 numbers, from the normal, then the arms of both witness
+    points about the solids' origins, world axes; of planar solids it stays in the plane."""
+    n = (arms[0], arms[1], arms[2])
+    arm_a, arm_b = (arms[3], arms[4], arms[5]), (arms[6], arms[7], arms[8])
+    write_gradient(n, arm_a, arm_b, flat, pointer(to, 0))

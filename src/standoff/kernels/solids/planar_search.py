@@ -24,8 +24,8 @@ N_ROW = 17
 N_FOUND = 12
 
 CLOSED, SPENT, BEYOND, MET = 0, 1, 2, 3  # how a search ended
-EVALUATIONS, NODE_PAIRS, LEAF_PAIRS, BOXES, BISECTIONS = 0, 1, 2, 3, 4
-N_COUNT = 5
+JETS, NODE_PAIRS, LEAF_PAIRS, BOXES, BISECTIONS, OPEN = 0, 1, 2, 3, 4, 5
+N_COUNT = 6
 # About how many jets a pair of leaves takes.
 JETS_OF_PAIR = 40
 
@@ -49,6 +49,12 @@ class Queue(NamedTuple):
     capacity: int
     found: Any
     most_found: int
+
+
+@small
+def evaluations(counts):
+    """Of points and of bounds."""
+    return counts[JETS] + counts[NODE_PAIRS] + counts[BOXES]
 
 
 @kernel
@@ -200,7 +206,7 @@ def close(pieces, bound, sought, queue, counts, progress):
     a, p, b, q = pieces
     made, size, upper, proven, n_found = progress
     counts[LEAF_PAIRS] += 1
-    counts[EVALUATIONS] += JETS_OF_PAIR
+    counts[JETS] += JETS_OF_PAIR
     near = nearest_points(a, p, b, q)
     n = direction(a, p, b, q, near, sought.extent)
     leaves = leaf_of(a, p.node), leaf_of(b, q.node)
@@ -278,9 +284,11 @@ def seek(a, b, sought, queue, counts, budget):
             ended = BEYOND
         elif upper <= sought.meeting:
             ended = MET
-        elif made + 4 > queue.capacity or counts[EVALUATIONS] > budget:
+        elif made + 4 > queue.capacity or evaluations(counts) > budget:
             ended = SPENT
         if ended >= 0:
+            queue.heap[size - 1] = row // N_ROW  # of those that stay open
+            counts[OPEN] = size
             return ended, min(proven, bound), upper, n_found if upper < inf else 0
         progress = Progress(made, size - 1, upper, proven, n_found)
         pieces = Pieces(a, take_piece(queue.rows, row + 1), b, take_piece(queue.rows, row + 9))

@@ -3,7 +3,7 @@
 from math import cos, inf, sin
 
 from standoff.kernels.algebra.roots import sqrt
-from standoff.kernels.algebra.vectors import axpy, dot, norm, rotate, scale, sub
+from standoff.kernels.algebra.vectors import axpy, cross, dot, norm, rotate, scale, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
@@ -17,7 +17,13 @@ from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.quadratic_max import line_max, quadratic_max
 from standoff.kernels.solids.spatial_heights import height_greatest
-from standoff.kernels.solids.spatial_likeness import differences, to_axis, to_own, turning
+from standoff.kernels.solids.spatial_likeness import (
+    OVER_SINE,
+    differences,
+    to_axis,
+    to_own,
+    turning,
+)
 from standoff.kernels.solids.spatial_pieces import (
     CUT_BY_TRIM,
     OUTSIDE_TRIM,
@@ -37,8 +43,7 @@ from standoff.kernels.solids.torus_potential import (
     potential_jet,
 )
 
-# Boxes for one piece and one potential, and how many wait at a time.
-MOST_BOXES = 400
+# Boxes of one piece and one potential that wait at a time.
 MOST_WAITING = 60
 # Parts of one trimming curve that are tested along it.
 MOST_PARTS = 200
@@ -129,6 +134,10 @@ def heights_third(phi, side, leaf, box, thirds):
         if kind == L.CONE:
             w = swing(side, o, phi.n)
             return (w * max(abs(box.v0), abs(box.v1)), w, 0.0, 0.0)
+    known, _, axis = turning(side, leaf)
+    if known:  # about the normal the height is constant along u
+        w = OVER_SINE * norm(cross(phi.n, axis))
+        return (w * thirds[0], w * thirds[1], w * thirds[2], thirds[3])
     return thirds
 
 
@@ -192,7 +201,7 @@ def axis_data(side, leaf):
     if dim == 2 and side.own[r + S.NATURAL] == AXIS_OF:
         c = chart_record(side.ints, side.own[r + S.CHART])
         o, straight = side.ints[c + L.CHART_REALS], 1.0
-    elif dim == 1 and side.own[r + S.NATURAL] == -2:
+    elif dim == 1 and side.own[r + S.NATURAL] == S.ROUND_ARC:
         e = edge_record(side.ints, side.own[r + S.FEATURE])
         o = side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
     if o < 0:
@@ -348,9 +357,9 @@ def settled(phi, sign, most, part, data, q):
 
 
 @kernel
-def proven(phi, sign, most, part, q, counts):
+def proven(phi, sign, most, part, q, limit, counts):
     """Is sign phi at most `most` all over the solid's piece that is in a part? Its greatest value
-    is expected near the parameters q."""
+    is expected near the parameters q; `limit` boxes are looked at."""
     side, leaf, box = part.side, part.leaf, part.box
     o, m = leaf_reals(side, leaf), side.numbers
     known, centre, first, other, along = axis_data(side, leaf)
@@ -367,7 +376,7 @@ def proven(phi, sign, most, part, q, counts):
         told = settled(phi, sign, most, S.Part(side, leaf, b), data, q)
         if told > 0:
             continue
-        if told < 0 or rounds > MOST_BOXES or count >= MOST_WAITING:
+        if told < 0 or rounds > limit or count >= MOST_WAITING:
             return False
         wide_u = m[o + S.FIRST] * (b.u1 - b.u0)
         wide_v = m[o + S.FIRST + 1] * (b.v1 - b.v0)

@@ -3,6 +3,7 @@
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.coaxial import coaxial_between, common_axis
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
     across,
@@ -18,9 +19,29 @@ from standoff.kernels.solids.spatial_pieces import (
     leaf_jet,
     leaf_reals,
     natural,
-    on_solid,
     reach_of,
     trim_state,
+)
+from standoff.kernels.solids.spatial_progress import (
+    ABOVE,
+    AT,
+    BISECTIONS,
+    BUDGET,
+    LEAF_A,
+    LEAF_B,
+    LEAST,
+    MET,
+    MINIMUM_REALS,
+    OF_LEAVES,
+    ROUNDING,
+    SIZE,
+    TOLERANCE,
+    evaluations,
+    goal_of,
+    keep_found,
+    leave_open,
+    local_goal,
+    middle,
 )
 from standoff.kernels.solids.spatial_tolerances import (
     LEAST_SPAN,
@@ -30,51 +51,13 @@ from standoff.kernels.solids.spatial_tolerances import (
 )
 from standoff.kernels.solids.torus_potential import potential_jet
 
-# What `best` holds: the least distance, how many minima, its leaves and parameters, the least bound
-# of what stayed open, 1 where the boundaries meet, and the tolerance, the slack of rounding, the
-# size, the tolerance of a tie, and how many boxes are allowed.
-LEAST, N_MINIMA, LEAF_A, LEAF_B, AT, OPEN, MET, TOLERANCE, ROUNDING, SIZE, BUDGET = (
-    0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13,
-)  # fmt: skip
-BEST_REALS = 16
-# What a minimum holds: distance, leaves, parameters.
-MINIMUM_REALS = 8
-MOST_MINIMA = 256
 # Pairs of boxes that wait, of 9 numbers each.
 PAIR_REALS = 9
 MOST_PAIRS = 200
+# Boxes that a potential is bounded over, of one piece: few at first, for another may do.
+FEW_BOXES, MOST_BOXES = 20, 400
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
 MARGINS = (1.0, 0.3, 3.0)
-
-
-@kernel
-def keep(best, minima, leaf_a, leaf_b, q, distance):
-    """Keep a pair of points on both solids."""
-    if distance < best[LEAST]:
-        best[LEAST] = distance
-        best[LEAF_A], best[LEAF_B] = leaf_a, leaf_b
-        for k in range(4):
-            best[AT + k] = q[k]
-    most = best[LEAST] + best[TOLERANCE]
-    if distance > most:
-        return
-    n = int(best[N_MINIMA])
-    if n >= MOST_MINIMA:
-        kept = 0
-        for i in range(n):
-            if minima[MINIMUM_REALS * i] <= most:
-                for k in range(MINIMUM_REALS):
-                    minima[MINIMUM_REALS * kept + k] = minima[MINIMUM_REALS * i + k]
-                kept += 1
-        n = kept
-        best[N_MINIMA] = n
-        if n >= MOST_MINIMA:
-            return
-    o = MINIMUM_REALS * n
-    minima[o], minima[o + 1], minima[o + 2] = distance, leaf_a, leaf_b
-    for k in range(4):
-        minima[o + 3 + k] = q[k]
-    best[N_MINIMA] = n + 1
 
 
 @kernel
@@ -89,14 +72,14 @@ def held_along(part, jet, toward, u, v):
 
 
 @kernel
-def by_own_surface(goal, a, b, q, counts):
+def by_own_surface(goal, a, b, q, limit, counts):
     """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
     known, phi = natural(a.side, a.leaf)
-    return known and proven(phi, -1.0, -goal, b, q, counts)
+    return known and proven(phi, -1.0, -goal, b, q, limit, counts)
 
 
 @kernel
-def by_witness(goal, a, b, at, best, counts):
+def by_witness(goal, a, b, at, limit, best, counts):
     """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
@@ -106,7 +89,7 @@ def by_witness(goal, a, b, at, best, counts):
         return False
     x, y = ja[0], jb[0]
     here = wa == a.leaf and wb == b.leaf
-    place = (here, q, x, y)
+    place = (here, q, x, y, limit)
     if by_one(plane_between(x, y, n), goal, a, b, place, counts):
         return True
     span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
@@ -117,7 +100,14 @@ def by_witness(goal, a, b, at, best, counts):
     held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
+    turned, point, axis = common_axis(a, b, n, size)
     for k in range(3):
+        if turned:
+            known, phi = coaxial_between(
+                x, y, n, frame, (sa, sb), (point, axis), MARGINS[k] / span, size
+            )
+            if known and by_one(phi, goal, a, b, place, counts):
+                return True
         phi = torus_between(x, y, n, frame, sa, sb, MARGINS[k] / span)
         if by_one(phi, goal, a, b, place, counts):
             return True
@@ -125,15 +115,10 @@ def by_witness(goal, a, b, at, best, counts):
 
 
 @kernel
-def middle(box):
-    return 0.5 * (box.u0 + box.u1), 0.5 * (box.v0 + box.v1)
-
-
-@kernel
 def by_one(phi, goal, a, b, place, counts):
     """By one potential through points x and y, whose parameters q are those of the parts if `here`;
     each part gets half of what the potential gains beyond the goal."""
-    here, q, x, y = place
+    here, q, x, y, limit = place
     low, high = potential_jet(phi, x, 0.0)[0], potential_jet(phi, y, 0.0)[0]
     spare = 0.5 * (high - low - goal)
     if spare < 0.0:
@@ -141,9 +126,9 @@ def by_one(phi, goal, a, b, place, counts):
     pa, pb = (q[0], q[1]), (q[2], q[3])
     if not here:
         pa, pb = middle(a.box), middle(b.box)
-    if not proven(phi, 1.0, low + spare, a, pa, counts):
+    if not proven(phi, 1.0, low + spare, a, pa, limit, counts):
         return False
-    return proven(phi, -1.0, spare - high, b, pb, counts)
+    return proven(phi, -1.0, spare - high, b, pb, limit, counts)
 
 
 @kernel
@@ -229,35 +214,45 @@ def nearest_of(a, b, counts):
 
 
 @kernel
-def keep_found(a, b, q, distance, best, minima):
-    """Keep a pair that is as near as the nearest, if both points are on the solids."""
-    if distance <= best[LEAST] + best[TOLERANCE] and (
-        on_solid(a.side, a.leaf, q[0], q[1]) and on_solid(b.side, b.leaf, q[2], q[3])
-    ):
-        keep(best, minima, a.leaf, b.leaf, q, distance)
-    if best[LEAST] <= best[TOLERANCE]:
-        best[MET] = 1.0
-
-
-@kernel
 def closed_by_any(a, b, best, minima, counts):
     """Is a pair of parts closed? Nearer points that are found are kept."""
     q, distance = nearest_of(a, b, counts)
     keep_found(a, b, q, distance, best, minima)
     if best[MET] > 0.0:
         return True
-    goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-    if by_own_surface(goal, a, b, (q[2], q[3]), counts):
+    goal, row = best[LEAST] - best[TOLERANCE] + best[ROUNDING], -1
+    if best[ABOVE] > best[LEAST]:
+        goal, row = local_goal(a, b, q, distance, best, minima)
+    pair = (a, b, q, distance)
+    closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts)
+    # a nearer place off a trim is cut away sooner than bounded
+    if not closed and distance >= goal:
+        closed = closed_to(goal, row, pair, MOST_BOXES, best, minima, counts)
+    if closed:
+        best[OF_LEAVES] = min(best[OF_LEAVES], goal - best[ROUNDING])
+    return closed
+
+
+@kernel
+def closed_to(goal, row, pair, limit, best, minima, counts):
+    """Do potentials prove a goal of two parts: of the surfaces themselves, through the nearest
+    points found in the pair, or through those that the goal comes from?"""
+    a, b, q, distance = pair
+    if by_own_surface(goal, a, b, (q[2], q[3]), limit, counts):
         return True
-    if by_own_surface(goal, b, a, (q[0], q[1]), counts):
+    if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
         return True
-    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), best, counts):
+    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), limit, best, counts):
         return True
     wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
+    at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+    if row >= 0:
+        o = MINIMUM_REALS * row
+        wa, wb = int(minima[o + 1]), int(minima[o + 2])
+        at = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     if wa == a.leaf and wb == b.leaf and distance >= goal:
         return False
-    at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
-    return by_witness(goal, a, b, (wa, wb, at), best, counts)
+    return by_witness(goal, a, b, (wa, wb, at), limit, best, counts)
 
 
 @kernel
@@ -266,7 +261,7 @@ def put_halves(a, b, best, work, count, low):
     au, av = widths(a.side, a.leaf, a.box)
     bu, bv = widths(b.side, b.leaf, b.box)
     if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
-        best[OPEN] = min(best[OPEN], low)
+        leave_open(best, a.leaf, b.leaf, a.box, b.box, low)
         return count
     if max(au, av) >= max(bu, bv):
         first, second = split(a.box, au >= av)
@@ -280,22 +275,24 @@ def put_halves(a, b, best, work, count, low):
 
 
 @kernel
-def close_leaves(a, leaf_a, b, leaf_b, best, minima, work, counts):
-    """Close a pair of leaves, cutting it where it has to be; what stays open lowers best[OPEN]."""
-    put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), 0.0)
+def close_leaves(a, b, pair, best, minima, work, counts):
+    """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
+    lowers best[OPEN]."""
+    leaf_a, leaf_b, low = pair
+    put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
     count = 1
     while count > 0 and best[MET] == 0.0:
         count -= 1
         o = PAIR_REALS * count
         pa = S.Part(a, leaf_a, S.Box(work[o], work[o + 1], work[o + 2], work[o + 3]))
         pb = S.Part(b, leaf_b, S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7]))
-        goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-        done, low = no_pair(pa, pb, goal, best[ROUNDING])
+        done, low = no_pair(pa, pb, goal_of(best), best[ROUNDING])
         low = max(low, work[o + 8])
         if done:
             continue
-        if counts[0] > best[BUDGET] or count >= MOST_PAIRS - 2:
-            best[OPEN] = min(best[OPEN], low)
+        if evaluations(counts) > best[BUDGET] or count >= MOST_PAIRS - 2:
+            best[OF_LEAVES] = min(best[OF_LEAVES], low)
+            leave_open(best, leaf_a, leaf_b, pa.box, pb.box, low)
             continue
         if (
             trim_state(a, leaf_a, pa.box) == OUTSIDE_TRIM
@@ -304,5 +301,5 @@ def close_leaves(a, leaf_a, b, leaf_b, best, minima, work, counts):
             continue
         if closed_by_any(pa, pb, best, minima, counts):
             continue
-        counts[4] += 1
+        counts[BISECTIONS] += 1
         count = put_halves(pa, pb, best, work, count, low)

@@ -52,10 +52,11 @@ def turning(side, leaf):
     """(known, point, axis) of the axis about which a leaf's parameter u turns it."""
     r = leaf_ints(side, leaf)
     dim, kind = side.own[r + S.DIM], own_kind(side, leaf)
-    if dim == 2 and kind in (AXIS_OF, CONE_OF, CIRCLE_OF):
+    made = side.own[r + S.NATURAL]
+    if made == S.TURNED or (dim == 2 and kind in (AXIS_OF, CONE_OF, CIRCLE_OF)):
         point, axis = moved_line(side, leaf_reals(side, leaf) + S.NATURAL_REALS + 3)
         return True, point, axis
-    if dim == 1 and side.own[r + S.NATURAL] == -2:
+    if made == S.ROUND_ARC:
         e = edge_record(side.ints, side.own[r + S.FEATURE])
         o = side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
         m, R, p = side.reals, side.pose.R, side.pose.p

@@ -3,19 +3,32 @@ leaves that is left is closed."""
 
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.crossing_planes import planes_apart
+from standoff.kernels.solids.over_plane import clear_of_plane
 from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
-from standoff.kernels.solids.spatial_closing import (
-    LEAST,
-    MET,
-    OPEN,
-    ROUNDING,
-    TOLERANCE,
-    close_leaves,
-    keep_found,
-    nearest_of,
-    no_pair,
-)
+from standoff.kernels.solids.spatial_closing import close_leaves, nearest_of, no_pair
 from standoff.kernels.solids.spatial_pieces import leaf_box
+from standoff.kernels.solids.spatial_progress import (
+    ABOVE,
+    BUDGET,
+    LEAF_PAIRS,
+    MET,
+    N_MINIMA,
+    NODE_PAIRS,
+    NOWHERE,
+    OF_LEAVES,
+    ROUNDING,
+    SIZE,
+    bound_minima,
+    evaluations,
+    farthest,
+    goal_of,
+    keep_found,
+    leave_open,
+)
+
+# Boxes that a pair with a plane is looked at with: when it is met, and when it is closed.
+MOST_VISITED, MOST_CLOSING = 12, 100
 
 
 @kernel
@@ -27,12 +40,12 @@ def node_ints(side, node):
 def offer(a, i, b, j, best, heap, count, counts):
     """Put a pair of nodes into the heap unless it cannot hold a nearest pair; its new count."""
     keys, firsts, others, limit = heap
-    counts[2] += 1
+    counts[NODE_PAIRS] += 1
     gap = gap_of(a, i, b, j) - best[ROUNDING]
-    if gap > best[LEAST] + best[TOLERANCE] or not admits(a, i, b, j, gap):
+    if gap > farthest(best) or not admits(a, i, b, j, gap):
         return count
     if count >= limit:
-        best[OPEN] = min(best[OPEN], max(gap, 0.0))
+        leave_open(best, -1 - i, -1 - j, NOWHERE, NOWHERE, max(gap, 0.0))
         return count
     return push(keys, firsts, others, count, gap, i, j)
 
@@ -47,8 +60,11 @@ def search(a, b, best, minima, heap, room, counts):
     left = 0
     while count > 0 and best[MET] == 0.0:
         key, i, j, count = take(heap[0], heap[1], heap[2], count)
-        if key > best[LEAST] + best[TOLERANCE]:
+        if key > farthest(best):
             break
+        if evaluations(counts) > best[BUDGET] and best[N_MINIMA] > 0.0:
+            leave_open(best, -1 - i, -1 - j, NOWHERE, NOWHERE, max(key, 0.0))
+            continue
         ra, rb = node_ints(a, i), node_ints(b, j)
         leaf_a, leaf_b = a.own[ra + 2], b.own[rb + 2]
         if leaf_a >= 0 and leaf_b >= 0:
@@ -63,26 +79,45 @@ def search(a, b, best, minima, heap, room, counts):
             count = offer(a, i, b, b.own[rb], best, heap, count, counts)
             count = offer(a, i, b, b.own[rb + 1], best, heap, count, counts)
     for k in range(left):
-        goal = best[LEAST] - best[TOLERANCE] + best[ROUNDING]
-        if pairs[3 * k + 2] < goal and best[MET] == 0.0:
-            counts[3] += 1
-            close_leaves(a, int(pairs[3 * k]), b, int(pairs[3 * k + 1]), best, minima, work, counts)
+        leaf_a, leaf_b, low = int(pairs[3 * k]), int(pairs[3 * k + 1]), pairs[3 * k + 2]
+        if low < goal_of(best) and best[MET] == 0.0:
+            counts[LEAF_PAIRS] += 1
+            best[OF_LEAVES] = goal_of(best) - best[ROUNDING]
+            pa = S.Part(a, leaf_a, leaf_box(a, leaf_a))
+            pb = S.Part(b, leaf_b, leaf_box(b, leaf_b))
+            if not left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
+                close_leaves(a, b, (leaf_a, leaf_b, low), best, minima, work, counts)
+            low = best[OF_LEAVES]
+        if best[ABOVE] > 0.0:
+            bound_minima(best, minima, leaf_a, leaf_b, low)
+
+
+@kernel
+def left_out(a, b, goal, most, best, counts):
+    """Do two parts, one or both of a plane, hold no nearest pair nearer than `goal`?"""
+    if planes_apart(a, b, best[SIZE]):
+        return True
+    if clear_of_plane(a, b, goal, best[ROUNDING], most, counts):
+        return True
+    return clear_of_plane(b, a, goal, best[ROUNDING], most, counts)
 
 
 @kernel
 def visit(a, b, key, best, minima, room, left, counts):
     """Look for nearer points in a pair of leaves, and list it; how many are listed."""
     pairs, most, _ = room
-    done, low = no_pair(a, b, best[LEAST] + best[TOLERANCE], best[ROUNDING])
-    if done:
+    done, low = no_pair(a, b, farthest(best), best[ROUNDING])
+    if done or left_out(a, b, farthest(best), MOST_VISITED, best, counts):
         return left
     q, distance = nearest_of(a, b, counts)
     keep_found(a, b, q, distance, best, minima)
     low = max(max(key, low), 0.0)
-    if low >= best[LEAST] - best[TOLERANCE] + best[ROUNDING]:
+    if low >= goal_of(best):
+        if best[ABOVE] > 0.0:
+            bound_minima(best, minima, a.leaf, b.leaf, low)
         return left
     if left >= most:
-        best[OPEN] = min(best[OPEN], low)
+        leave_open(best, a.leaf, b.leaf, a.box, b.box, low)
         return left
     pairs[3 * left], pairs[3 * left + 1], pairs[3 * left + 2] = a.leaf, b.leaf, low
     return left + 1

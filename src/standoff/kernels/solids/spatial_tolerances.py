@@ -28,3 +28,14 @@ PARALLEL_TANGENTS: Final = 1e-9
 """Relative: area of two tangents, over their squares, below which a face has no curvature."""
 PARAMETER_SPARE: Final = 4e-16
 """Relative: two roundings of a parameter at the end of a part of a trimming curve."""
+LEAST_CROSSING: Final = 1e-3
+"""Sine of the angle of two planes below which their common line is not computed."""
+CROSSING_SPARE: Final = 1e-12
+"""Of the sizes and coordinates: how far the computed common line of two planes may be from the
+true one, some ten roundings over `LEAST_CROSSING`."""
+NEARLY_COAXIAL: Final = 0.02
+"""One less the cosine of the axes' angle, and their offset in sizes: what turns about axes nearer
+to each other than this is tried with a potential about one of them."""
+NEARLY_STRAIGHT: Final = 1e-4
+"""Cosine: a normal this near to an axis, or to across it, is taken to be so in a coaxial potential;
+the torus potential beside it keeps the normal as it is."""

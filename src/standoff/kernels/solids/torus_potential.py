@@ -20,6 +20,7 @@ CENTRE_OF = 4
 # The greatest third derivative of a distance from a point, along any direction, times its square:
 # 3 sin² cos is greatest at 2 / sqrt(3).
 THIRD = 1.1548
+THIRD_ROOT = 1.0 / 3.0
 
 
 class Potential(NamedTuple):
@@ -126,6 +127,8 @@ def round_axis_jet(phi, y, reach):
     if phi.kind == CONE_OF:
         value = rho * phi.k1 - z * phi.k2
         gradient = axpy(phi.k1, out, scale(-phi.k2, phi.n))
+        # so that c, its square and its cube times numbers bound derivatives that have one k1 each
+        c = abs(phi.k1) ** THIRD_ROOT * c
         return value, gradient, outer(phi.k1 / rho, around, around), c, 0.0
     m = rho - phi.k1
     s = sqrt(m * m + z * z)

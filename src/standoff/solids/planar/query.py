@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -9,18 +10,22 @@ from numpy.typing import NDArray
 
 from standoff.bodies.features import NO_FEATURE
 from standoff.kernels.entries import planar_solids as entries
+from standoff.kernels.entries.solids import gradient as write_gradient
 from standoff.kernels.solids import planar_search as S
 from standoff.motion import PoseLike
 from standoff.solids.answer import (
     Continuum,
     NearestPair,
+    OpenPair,
     Overlap,
     SolidCounts,
     SolidProximity,
 )
+from standoff.solids.asked import DEFAULT, Asked
+from standoff.solids.parting import parted
 from standoff.solids.planar.continua import continuum_of, distinct
 from standoff.solids.planar.pair import Queried, Shape
-from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PARTED_BY, PROVEN_TO
+from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_TO
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.status import Status
@@ -29,22 +34,9 @@ Array = NDArray[np.float64]
 
 CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048
-MOST_EVALUATIONS = 4_000_000
-NORMAL_DIGITS = 6
+LISTED = 64  # open pairs that an answer has
 MOST_SQUARES = 1200
 UNSEEN: Array = np.full(3, np.nan)
-
-
-class Asked(NamedTuple):
-    """Options of ``so.solids.distance``."""
-
-    within: float | None = None
-    tolerance: float | None = None
-    minima: float | None = None
-    deadline: int | None = None
-
-
-DEFAULT = Asked()
 
 
 class Searched(NamedTuple):
@@ -55,6 +47,7 @@ class Searched(NamedTuple):
     least: float
     found: Array
     counts: NDArray[np.int64]
+    left: Array
 
 
 def planar_distance(
@@ -69,8 +62,7 @@ def planar_distance(
     size = max(first.size, second.size)
     proof = PROVEN_TO * size if tolerance is None else tolerance
     proof = max(proof, 4.0 * BOUND_ROUNDED * extent)
-    budget = MOST_EVALUATIONS if deadline is None else deadline
-    pair = Queried(first, second, np.concatenate([flat_a, flat_b]), proof, extent, budget)
+    pair = Queried(first, second, np.concatenate([flat_a, flat_b]), proof, extent, deadline)
     horizon = np.inf if within is None else within
     searched = search(pair, minima or 0.0, horizon, meeting=proof)
     if searched.ended == S.BEYOND:
@@ -98,7 +90,15 @@ def search(pair: Queried, above: float, horizon: float, meeting: float) -> Searc
         counts,
     )
     pairs = found[: n * S.N_FOUND].reshape(n, S.N_FOUND)
-    return Searched(ended, proven, least, pairs[np.argsort(pairs[:, 0], kind="stable")], counts)
+    left = rows.reshape(-1, S.N_ROW)[heap[: counts[S.OPEN]]]
+    return Searched(
+        ended,
+        proven,
+        least,
+        pairs[np.argsort(pairs[:, 0], kind="stable")],
+        counts,
+        left[np.argsort(left[:, 0], kind="stable")],
+    )
 
 
 def _inside(pair: Queried) -> tuple[bool, bool]:
@@ -120,7 +120,37 @@ def _first(loop: Any) -> Array:
 
 
 def _counts(counts: NDArray[np.int64]) -> SolidCounts:
-    return SolidCounts(*(int(n) for n in counts))
+    jets, nodes, leaves, boxes, cuts, _ = (int(n) for n in counts)
+    return SolidCounts(jets + nodes + boxes, nodes, leaves, boxes, cuts)
+
+
+def _open(pair: Queried, searched: Searched) -> tuple[tuple[OpenPair, ...], int]:
+    """What a search left: pieces in boxes, the nearest first; and how many."""
+    rows = searched.left[searched.left[:, 0] < searched.least - pair.tolerance]
+    listed = tuple(
+        OpenPair(
+            float(row[0]) - pair.slack,
+            *(NO_FEATURE, NO_FEATURE),
+            *(_corners(pair, row[at : at + 8]) for at in (1, 9)),
+        )
+        for row in rows[:LISTED]
+    )
+    return listed, len(rows)
+
+
+def _corners(pair: Queried, piece: Array) -> Array:
+    """(4, 3) of a box around a piece, which is a chord's capsule, world axes."""
+    ends, radius = piece[3:7].reshape(2, 2), float(piece[7])
+    along = ends[1] - ends[0]
+    size = float(np.linalg.norm(along))
+    along = along / size if size > 0.0 else np.array([1.0, 0.0])
+    across = np.array([-along[1], along[0]])
+    spots = [
+        end + radius * (s * along + t * across)
+        for end, s in zip(ends, (-1.0, 1.0), strict=True)
+        for t in (-1.0, 1.0)
+    ]
+    return np.array([pair.world(spot) for spot in spots])
 
 
 def _pairs(pair: Queried, rows: Array) -> tuple[NearestPair, ...]:
@@ -165,7 +195,13 @@ def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None)
     elif ties > 1:
         smooth = Smoothness.ONE_SIDED
     bounds = searched.proven if apart else -np.inf, searched.least
-    return _answer(pair, status, bounds, pairs, smooth, _counts(searched.counts), continuum, inside)
+    found = _answer(
+        pair, status, bounds, pairs, smooth, _counts(searched.counts), continuum, inside
+    )
+    if apart and proven:
+        return found
+    listed, count = _open(pair, searched)
+    return replace(found, open=listed, counts=found.counts._replace(open=count))
 
 
 def _answer(
@@ -192,7 +228,7 @@ def _answer(
                 best.point_b - pair.poses[21:24],
             ]
         )
-        entries.gradient(arms, gradient)
+        write_gradient(arms, True, gradient)
     if overlap is None and status is not Status.TOUCHING and lower > -np.inf:
         lower = max(lower, 0.0)
     lower -= pair.slack
@@ -213,6 +249,7 @@ def _answer(
         continuum=continuum,
         overlap=overlap,
         inside=side,
+        open=(),
         gradient_rows=gradient,
         smoothness=smooth if pairs else Smoothness.UNDEFINED,
         counts=counts,
@@ -243,29 +280,20 @@ def _meeting(pair: Queried, above: float) -> SolidProximity:
     if len(rows) > 1 and not continuum:
         smooth = Smoothness.ONE_SIDED
     pairs, counts = _pairs(pair, rows), _counts(searched.counts)
-    parted = _parted(pair, np.array([each.normal for each in pairs])) if pairs else np.inf
-    status = Status.TOUCHING if parted < np.inf else Status.WITHIN
-    bounds = -parted, searched.least
+    normals = np.array([each.normal for each in pairs]).reshape(-1, 3)
+    way = parted(normals, pair.tolerance, lambda by: _is_apart(pair, by))
+    status = Status.TOUCHING if way < np.inf else Status.WITHIN
+    bounds = -way, searched.least
     return _answer(pair, status, bounds, pairs, smooth, counts, continuum)
 
 
-def _parted(pair: Queried, normals: Array) -> float:
-    """A length by which moving B along the mean of the normals is proven to part the solids; inf
-    where that is not proven of `PARTED_BY` tolerances."""
-    # each direction once, however many places have it
-    mean = np.unique(normals.round(NORMAL_DIGITS), axis=0).sum(axis=0)
-    size = float(np.linalg.norm(mean))
-    least = float((normals @ mean).min()) / size if size > 0.0 else 0.0
-    if not least > 0.0:
-        return float(np.inf)
-    # so far that each place opens by as much
-    way = PARTED_BY * pair.tolerance / least
+def _is_apart(pair: Queried, by: Array) -> bool:
+    """Is it proven that the solids have no common point with B moved by a world vector?"""
     poses = pair.poses.copy()
-    poses[21:24] += way * mean / size
+    poses[21:24] += by
     beside = pair._replace(poses=poses)
     found = search(beside, 0.0, np.inf, meeting=0.0)
-    apart = found.ended != S.MET and found.proven > 0.0 and not any(_inside(beside))
-    return way if apart else float(np.inf)
+    return found.ended != S.MET and found.proven > 0.0 and not any(_inside(beside))
 
 
 def common_ball(pair: Queried, searched: Searched) -> Overlap | None:

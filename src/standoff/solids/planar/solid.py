@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,20 +21,25 @@ from standoff.kernels.solids.planar_tolerances import END_OF_PIECE
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
+from standoff.solids.asked import Asked
 from standoff.solids.planar.area import area_of
 from standoff.solids.planar.loops import Loop, read_loop
 from standoff.solids.planar.nesting import check_simple, nested, oriented
 from standoff.solids.planar.of_bodies import loops_of_body
 from standoff.solids.planar.outline import Outline, packed_outline
-from standoff.solids.planar.query import Asked, planar_distance
+from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
+from standoff.solids.plotted import Plotted, checked_answer
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 VertexKind = Literal["convex", "reflex", "smooth"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlanarSolid(KeepsReadOnly):
+class PlanarSolid(KeepsReadOnly, Plotted):
     """A planar solid in z = 0: what lies between loops of curves. Immutable.
 
     Make one with `from_loops`, `from_body` or ``so.solids.read_dxf``.
@@ -189,6 +194,11 @@ class PlanarSolid(KeepsReadOnly):
         return 2
 
     @property
+    def bounded(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def size(self) -> float:
         """Diagonal of the box around it, length."""
         return self.outline.size
@@ -223,6 +233,22 @@ class PlanarSolid(KeepsReadOnly):
         """
         first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
         return planar_distance(first, second, pose_a, pose_b, Asked(within))
+
+    def _figure(self, unit: str) -> Figure:
+        from standoff.solids.drawing.planar_picture import solid_figure
+
+        return solid_figure(self, self.name, unit)
+
+    def pictured(
+        self, a: Any, b: Any, answer: Any, view: tuple[float, float] | None, unit: str
+    ) -> Figure:
+        """The picture that ``so.plot`` makes of two solids, of which this is one; see `Plotted`."""
+        from standoff.solids.drawing.planar_picture import pair_figure
+
+        del view  # it is their plane
+        first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
+        names = first.name, second.name
+        return pair_figure((first, second), names, checked_answer(answer), unit)
 
     def signed_distance(
         self, points: Any, *, gradients: bool = False

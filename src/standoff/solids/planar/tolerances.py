@@ -61,7 +61,3 @@ NO_CORNER: Final = 1e-9
 CLEAR_AREA: Final = 1e-2
 """A polygon through points of a loop that has more area than this fraction of the size squared
 turns as the loop does."""
-
-PARTED_BY: Final = 4.0
-"""Times the tolerance: a solid is moved so far along the normal to see whether it then is apart; if
-so, no more than that is shared, and they touch."""

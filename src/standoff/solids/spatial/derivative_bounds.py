@@ -9,10 +9,12 @@ from math import comb
 import numpy as np
 
 from standoff.geometry.boxes import Boxes
-from standoff.geometry.curves import ConicArc, Curve, Line
+from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.interval_vectors import length, mapped
 from standoff.geometry.intervals import Interval, interval
+from standoff.geometry.net_bounds import CutNets
 from standoff.geometry.nurbs import NurbsSurface
+from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.series import Series, power
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
@@ -25,6 +27,7 @@ from standoff.solids.spatial.tolerances import DERIVATIVE_INFLATION
 COLUMNS = 12
 # Partial derivatives in the order of the columns.
 ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
+ORDERS_ALONG = tuple((k, 0) for k in range(4))
 FIRST, SECOND, THIRD, SPREAD = slice(0, 2), slice(2, 5), slice(5, 9), slice(9, 12)
 
 
@@ -97,24 +100,31 @@ def _sphere(surface: Surface, rows: Array) -> Array:
 
 
 def _nurbs(surface: Surface, rows: Array) -> Array:
-    """From the nets of the homogeneous derivatives, by Leibniz's rule for x w."""
     assert isinstance(surface, NurbsSurface)
     nets = surface.nets_over(Boxes(rows[:, [0, 2]], rows[:, [1, 3]]))
+    found = np.zeros((len(rows), COLUMNS))
+    found[:, : len(ORDERS) - 1] = _of_nets(nets, surface.linear, ORDERS)
+    return found
+
+
+def _of_nets(nets: CutNets, linear: Array, orders: Sequence[tuple[int, int]]) -> Array:
+    """(n, k - 1) bounds of derivatives of k orders, the lowest first, from the nets of the
+    homogeneous ones, by Leibniz's rule for x w."""
     centre = interval(nets.points.middle.mean(axis=1)[:, None])
     h, w = {}, {}
-    for order in ORDERS:
+    for order in orders:
         net = _row(nets.net(*order))
         h[order], w[order] = _hull(net[:3] - centre * net[3]), _hull(net[3])
     x = {(0, 0): _hull(nets.points - centre)}
-    found = np.zeros((len(rows), COLUMNS))
-    for k, (a, b) in enumerate(ORDERS[1:]):
+    found = np.zeros((len(nets.h), len(orders) - 1))
+    for k, (a, b) in enumerate(orders[1:]):
         total = h[a, b]
-        for i, j in ORDERS:
+        for i, j in orders:
             if i <= a and j <= b and (i, j) != (a, b):
                 factor = float(comb(a, i) * comb(b, j))
                 total = total - x[i, j] * w[a - i, b - j] * factor
         x[a, b] = total / w[0, 0]
-        mapped_ = mapped(surface.linear, x[a, b])
+        mapped_ = mapped(linear, x[a, b])
         found[:, k] = length(mapped_[0], mapped_[1], mapped_[2]).hi
     return np.where(np.isfinite(found), found, np.inf)
 
@@ -173,6 +183,10 @@ def curve_derivatives(curve: Curve, pieces: Sequence[tuple[float, float]]) -> Ar
         found[:, 0] = np.linalg.norm(curve.basis()[:, 0])
     elif isinstance(curve, ConicArc):
         found[:, :3] = np.linalg.norm(curve.basis()[:, :2], 2)
+    elif isinstance(curve, RationalBezier | NurbsCurve):
+        ends = np.array(pieces)
+        nets = curve.nets_over(Interval(ends[:, 0], ends[:, 1]))
+        found[:, :3] = _of_nets(nets, np.eye(3), ORDERS_ALONG)
     elif isinstance(curve, SurfaceCurve):
         found[:] = [_on_surface(curve, a, b) for a, b in pieces]
     else:

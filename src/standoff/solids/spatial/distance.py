@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -12,14 +12,19 @@ from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
-from standoff.solids.answer import Continuum, Overlap, SolidCounts, SolidProximity
-from standoff.solids.spatial.minimum import BUDGET, Found
+from standoff.solids.answer import Continuum, NearestPair, OpenPair, Overlap, SolidProximity
+from standoff.solids.asked import DEADLINE
+from standoff.solids.parting import parted
+from standoff.solids.spatial.left_open import LISTED, around, open_pairs
+from standoff.solids.spatial.local_minima import local_minima
+from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.overlap import common_ball
 from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, within_box
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid_model import SolidModel, as_model
+from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
-from standoff.solids.spatial.tolerances import PARTED, PROOF_TOLERANCE
+from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_ROUNDING, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -31,6 +36,20 @@ MOST_TIES = 64
 UNDEFINED = Smoothness.UNDEFINED
 # Of the tolerance: rounding of bounds that are proven to it.
 PROVEN = 1.001
+OUTSIDE = (S.OUTSIDE, S.OUTSIDE)
+Inside = Literal["A", "B", ""]
+
+
+class Told(NamedTuple):
+    """What an answer says beside its numbers."""
+
+    status: Status
+    smoothness: Smoothness = UNDEFINED
+    continuum: Continuum | None = None
+    overlap: Overlap | None = None
+    inside: Inside = ""
+    open: tuple[OpenPair, ...] = ()
+    n_open: int = 0
 
 
 def spatial_distance(
@@ -39,8 +58,10 @@ def spatial_distance(
     pose_a: Any = None,
     pose_b: Any = None,
     *,
-    evaluations: int = BUDGET,
+    evaluations: int = DEADLINE,
     within: float | None = None,
+    tolerance: float | None = None,
+    minima: float | None = None,
 ) -> SolidProximity:
     """The proven distance of two solids at poses.
 
@@ -50,9 +71,13 @@ def spatial_distance(
     pose_a, pose_b : poses in the world
         The identity by default.
     evaluations : int
-        Boxes that potentials are bounded over, at most: what is then open stays an interval.
+        Of points and bounds, at most: what is then open stays an interval.
     within : float, optional
         Horizon, length: of solids farther apart only that is proven, with the status FAR.
+    tolerance : float, optional
+        To what the distance is proven, length; 1e-10 of both sizes together by default.
+    minima : float, optional
+        All local minima of the distance below this one are kept, length.
 
     Returns
     -------
@@ -65,28 +90,29 @@ def spatial_distance(
     """
     placed = [Pose.identity() if pose is None else Pose.of(pose) for pose in (pose_a, pose_b)]
     pair = PlacedPair(as_model(a), as_model(b), *placed)
-    inside: Literal["A", "B", ""] = ""
-    if _inside(pair, "A"):
-        inside = "A"
-    elif _inside(pair, "B"):
-        inside = "B"
+    inside: Inside = "A" if _inside(pair, "A") else "B" if _inside(pair, "B") else ""
     senses = (
         S.INSIDE if inside == "B" else S.OUTSIDE,
         S.INSIDE if inside == "A" else S.OUTSIDE,
     )
+    proof = PROOF_TOLERANCE * pair.size if tolerance is None else tolerance
+    proof = max(
+        proof, 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.pb - pair.pa)))
+    )
     # two tolerances more, so that what lies beyond is proven to
-    horizon = np.inf if within is None else within + 2.0 * PROOF_TOLERANCE * pair.size
-    found = pair.least(senses, evaluations, horizon)
+    horizon = np.inf if within is None else within + 2.0 * proof
+    sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=LISTED)
+    found = pair.least(senses, sought)
     if found.met:
-        return _meeting(pair, found, senses)
-    if np.isinf(found.upper):
+        return _meeting(pair, found, sought, senses)
+    if within is not None and found.upper >= horizon and not inside and found.lower >= within:
+        return _answer(pair, replace(found, upper=np.inf), [], Told(Status.FAR))
+    if found.upper >= horizon and not found.n_open:
         raise StandoffError(
             f"No pair of points of {pair.a!r} and {pair.b!r} was found: the normals of a boundary "
             "may be wrong; report the pair with its poses."
         )
-    if within is not None and found.upper >= horizon and not inside:
-        return _beyond(pair, found)
-    return _apart(pair, found, senses, inside, evaluations)
+    return _apart(pair, found, senses, inside, sought)
 
 
 def _inside(pair: PlacedPair, which: str) -> bool:
@@ -113,41 +139,67 @@ def _references(solid: SolidModel) -> Array:
     return solid.references
 
 
-def _places(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> list[Place]:
-    rows = [found.best, *found.minima[:MOST_TIES]]
+def _places(pair: PlacedPair, found: Found, senses: tuple[int, int], above: float) -> list[Place]:
+    if not len(found.minima):
+        return []
+    if above > 0.0:
+        return local_minima(pair, found, senses)
+    rows = [found.best, *_spread(pair, found.minima)[:MOST_TIES]]
     return distinct(pair, [pair.place(row, senses) for row in rows])
+
+
+def _spread(pair: PlacedPair, rows: Array) -> list[Array]:
+    """Rows in an order in which each pair of features comes before any comes again."""
+    seen: dict[tuple[int, int], int] = {}
+    rank = []
+    for row in rows:
+        key = pair.a.leaves[int(row[1])].feature, pair.b.leaves[int(row[2])].feature
+        rank.append(seen.get(key, 0))
+        seen[key] = rank[-1] + 1
+    return [rows[k] for k in np.argsort(rank, kind="stable")]
 
 
 def _apart(
     pair: PlacedPair,
     found: Found,
     senses: tuple[int, int],
-    inside: Literal["A", "B", ""],
-    evaluations: int,
+    inside: Inside,
+    sought: Sought,
 ) -> SolidProximity:
-    places = _places(pair, found, senses)
-    continuum = continuum_of(pair, places, found, senses)
+    places = _places(pair, found, senses, sought.above)
+    near = [place for place in places if place.distance <= found.upper + found.tolerance]
+    continuum = continuum_of(pair, near, found, senses)
     if found.lower <= 0.0:
         # what stays open may be that the boundaries meet, so nothing is known below
         found = replace(found, lower=-np.inf)
     proven = found.upper - found.lower <= PROVEN * found.tolerance
+    # a tie more is no loss, a local minimum is
+    proven = proven and not (sought.above > 0.0 and found.lost)
     if not proven:
-        status = Status.DEADLINE if found.counts[0] > evaluations else Status.WITHIN
+        status = Status.DEADLINE if found.told.evaluations > sought.deadline else Status.WITHIN
     elif inside:
         status = Status.CONTAINED
     else:
         status = Status.CONTINUUM if continuum else Status.CONVERGED
-    smoothness = Smoothness.SMOOTH
-    if continuum:
-        smoothness = Smoothness.PARTIAL
-    elif len(places) > 1:
-        smoothness = Smoothness.ONE_SIDED
+    smoothness = _smoothness(near, continuum)
     if not proven and found.lower <= 0.0:
-        smoothness = Smoothness.UNDEFINED
-    return _answer(pair, found, places, status, smoothness, continuum, None, inside)
+        smoothness = UNDEFINED
+    left, n_left = ((), 0) if proven else open_pairs(pair, found)
+    told = Told(status, smoothness, continuum, None, inside, left, n_left)
+    return _answer(pair, found, places, told)
 
 
-def _meeting(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> SolidProximity:
+def _smoothness(near: list[Place], continuum: Continuum | None) -> Smoothness:
+    if not near:
+        return UNDEFINED
+    if continuum:
+        return Smoothness.PARTIAL
+    return Smoothness.ONE_SIDED if len(near) > 1 else Smoothness.SMOOTH
+
+
+def _meeting(
+    pair: PlacedPair, found: Found, sought: Sought, senses: tuple[int, int]
+) -> SolidProximity:
     """The boundaries meet: the solids overlap, or touch."""
     place = pair.place(found.best, senses)
     middle = 0.5 * (place.point_a + place.point_b)
@@ -160,73 +212,78 @@ def _meeting(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> SolidPr
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
     if overlap:
-        return _answer(pair, found, [place], Status.OVERLAPPING, UNDEFINED, None, overlap, "")
-    parted = _parted(pair, place, found.tolerance)
-    status = Status.TOUCHING if parted < np.inf else Status.WITHIN
-    met = replace(found, lower=-parted)
-    return _answer(pair, met, [place], status, UNDEFINED, None, None, "")
+        return _answer(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
+    return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
 
 
-def _parted(pair: PlacedPair, place: Place, tolerance: float) -> float:
-    """A length by which moving B along the normal is proven to part the solids; inf where that is
-    not proven of `PARTED` tolerances."""
-    way = PARTED * tolerance
-    moved = Pose(pair.rb, pair.pb + way * place.normal)
-    beside = PlacedPair(pair.a, pair.b, Pose(pair.ra, pair.pa), moved)
-    if _inside(beside, "A") or _inside(beside, "B"):
-        return float(np.inf)
-    found = beside.least((S.OUTSIDE, S.OUTSIDE), BUDGET)
-    return way if not found.met and found.lower > 0.0 else float(np.inf)
+def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
+    """No ball was found inside both: all places of contact, and whether they can be parted."""
+    # local minima below the tolerance, so that nothing is to be closed
+    found = _contacts(
+        pair, pair.least(senses, sought._replace(above=0.5 * sought.tolerance)), senses
+    )
+    near = _places(pair, found, senses, 0.0)
+    continuum = continuum_of(pair, near, found, senses)
+    normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])
+    way = parted(normals, found.tolerance, lambda by: _is_apart(pair.moved(by)))
+    places = near
+    if sought.above > 0.0:
+        others = _places(pair, pair.least(senses, sought), senses, sought.above)
+        places = near + [each for each in others if each.distance > near[-1].distance]
+    met = replace(found, lower=-way)
+    if way < np.inf:
+        told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
+        return _answer(pair, met, places, told)
+    left = around(pair, near)
+    return _answer(pair, met, places, Told(Status.WITHIN, open=left, n_open=len(left)))
 
 
-def _beyond(pair: PlacedPair, found: Found) -> SolidProximity:
-    """Solids beyond the horizon: only a bound is known."""
-    unseen: Array = np.full(3, np.nan)
-    boxes, steps, nodes, leaves, cuts = found.counts
-    return SolidProximity(
-        status=Status.FAR, distance=np.inf, lower_bound=found.lower - pair.a.slack - pair.b.slack,
-        upper_bound=np.inf, slack=pair.a.slack + pair.b.slack, point_a=unseen, point_b=unseen,
-        normal=unseen, feature_a=NO_FEATURE, feature_b=NO_FEATURE, parameters_a=(),
-        parameters_b=(), minima=(), continuum=None, overlap=None, inside="",
-        gradient_rows=np.full(12, np.nan), smoothness=UNDEFINED,
-        counts=SolidCounts(boxes + 2 * steps, nodes, leaves, boxes, cuts),
-        poses=(
-            np.concatenate([pair.ra.ravel(), pair.pa]),
-            np.concatenate([pair.rb.ravel(), pair.pb]),
-        ),
-    )  # fmt: skip
+def _nearest(found: Found) -> Array:
+    return found.minima[found.minima[:, 0] <= found.upper + found.tolerance]
 
 
-def _answer(
-    pair: PlacedPair,
-    found: Found,
-    places: list[Place],
-    status: Status,
-    smoothness: Smoothness,
-    continuum: Continuum | None,
-    overlap: Overlap | None,
-    inside: Literal["A", "B", ""],
-) -> SolidProximity:
-    place = places[0]
+def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
+    """Without the places where boundaries only cross, as those of a solid's face and of the sides
+    of what stands on it, unless there is no other."""
+    rows = _nearest(found)
+    touch = [row for row in rows if is_stationary(pair, pair.place(row, senses), IN_CONTACT)]
+    if not touch:
+        return found
+    farther = found.minima[len(rows) :]
+    return replace(found, minima=np.concatenate([touch, farther]), best=touch[0])
+
+
+def _is_apart(pair: PlacedPair) -> bool:
+    """Is it proven that two solids have no common point?"""
+    if _inside(pair, "A") or _inside(pair, "B"):
+        return False
+    found = pair.least(OUTSIDE, Sought(PROOF_TOLERANCE * pair.size))
+    return not found.met and found.lower > 0.0
+
+
+UNSEEN = NearestPair(
+    np.nan, np.nan, *(np.full(3, np.nan),) * 3, NO_FEATURE, NO_FEATURE, (), ()
+)  # fmt: skip
+
+
+def _answer(pair: PlacedPair, found: Found, places: list[Place], told: Told) -> SolidProximity:
     distance, lower, upper = found.upper, found.lower, found.upper
-    if overlap:
-        distance = upper = -2.0 * overlap.radius
+    if told.overlap:
+        distance = upper = -2.0 * told.overlap.radius
         lower = -np.inf
     minima = tuple(pair.nearest_pair(p, lower) for p in places)
-    first = minima[0]
-    boxes, steps, nodes, leaves, cuts = found.counts
-    slack = pair.a.slack + pair.b.slack
-    undefined = smoothness is Smoothness.UNDEFINED
-    gradient = np.zeros(12) if undefined else pair.gradient(place)
+    first = minima[0] if minima else UNSEEN
+    if not minima:
+        distance = upper = np.inf
+    gradient = np.full(12, np.nan)
+    if told.smoothness is not UNDEFINED:
+        gradient = pair.gradient(places[0])
     return SolidProximity(
-        status=status, distance=distance, lower_bound=lower - slack, upper_bound=upper + slack,
-        slack=slack, point_a=first.point_a, point_b=first.point_b,
-        normal=first.normal, feature_a=first.feature_a, feature_b=first.feature_b,
-        parameters_a=first.parameters_a, parameters_b=first.parameters_b, minima=minima,
-        continuum=continuum, overlap=overlap, inside=inside, gradient_rows=gradient,
-        smoothness=smoothness, counts=SolidCounts(boxes + 2 * steps, nodes, leaves, boxes, cuts),
-        poses=(
-            np.concatenate([pair.ra.ravel(), pair.pa]),
-            np.concatenate([pair.rb.ravel(), pair.pb]),
-        ),
+        status=told.status, distance=distance, lower_bound=lower - pair.slack,
+        upper_bound=upper + pair.slack, slack=pair.slack, point_a=first.point_a,
+        point_b=first.point_b, normal=first.normal, feature_a=first.feature_a,
+        feature_b=first.feature_b, parameters_a=first.parameters_a,
+        parameters_b=first.parameters_b, minima=minima, continuum=told.continuum,
+        overlap=told.overlap, inside=told.inside, open=told.open, gradient_rows=gradient,
+        smoothness=told.smoothness, counts=found.told._replace(open=told.n_open), poses=pair.poses,
     )  # fmt: skip

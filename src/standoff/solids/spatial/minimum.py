@@ -5,21 +5,45 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import boundary_distance, solid_point
-from standoff.kernels.solids import spatial_closing as C
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids import spatial_progress as C
+from standoff.solids.answer import SolidCounts
+from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING, PROOF_TOLERANCE
 
 HEAP = 1 << 16
 PAIRS = 1 << 14
 IDENTITY = np.array([1.0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0])
-# Boxes that potentials are bounded over, at most.
-BUDGET = 400_000
+# Pairs of points that are kept: ties, or local minima.
+MOST_TIES, MOST_LOCAL = 256, 1 << 14
+EITHER = S.EITHER
+
+
+class Sought(NamedTuple):
+    """How a search is to go.
+
+    Attributes
+    ----------
+    tolerance : to what the distance is to be proven, length.
+    deadline : evaluations, at most.
+    below : distances from here on are not looked for, length.
+    above : local minima up to this distance are kept, length; 0: only the nearest pairs.
+    on_meeting : whether the search ends where the boundaries are found to meet.
+    listed : how many pairs of boxes that stay open are listed.
+    """
+
+    tolerance: float
+    deadline: int = DEADLINE
+    below: float = np.inf
+    above: float = 0.0
+    on_meeting: bool = True
+    listed: int = 0
 
 
 @dataclass(frozen=True)
@@ -31,9 +55,13 @@ class Found:
     upper, lower : proven, length.
     tolerance : within which the proof is complete, length.
     met : the boundaries are closer than that.
-    minima : rows (distance, leaf_a, leaf_b, four parameters, 0) of nearest pairs.
+    minima : rows (distance, leaf_a, leaf_b, four parameters, bound) of nearest pairs.
     best : such a row of the nearest.
+    left : rows (leaf_a, leaf_b, both boxes, bound) of pairs of boxes that stayed open, the nearest
+        first; a leaf below 0 is a node.
+    lost : how many local minima there was no room for.
     counts : boxes, steps of Newton's method, pairs of nodes, pairs of leaves, bisections.
+    n_open : pairs of boxes that stayed open.
     """
 
     upper: float
@@ -42,7 +70,16 @@ class Found:
     met: bool
     minima: Array
     best: Array
+    left: Array
+    lost: int
     counts: tuple[int, ...]
+    n_open: int
+
+    @property
+    def told(self) -> SolidCounts:
+        """The counts as an answer has them."""
+        boxes, steps, nodes, leaves, cuts = self.counts
+        return SolidCounts(boxes + 2 * steps + nodes, nodes, leaves, boxes, cuts)
 
 
 @lru_cache(maxsize=8)
@@ -51,20 +88,28 @@ def _scratch(thread: int) -> tuple[Array, Any, Array]:
     return np.empty(2048 + 3 * PAIRS), np.empty(2 * HEAP, dtype=np.int64), np.empty(HEAP)
 
 
+def started(sought: Sought, size: float, away: float) -> tuple[Array, Array]:
+    """What a search fills: (best, minima), with what is asked of it in `best`; `away` is how far
+    the solids' frames are from each other, length."""
+    best = np.zeros(C.BEST_REALS + C.OPEN_REALS * sought.listed)
+    best[C.LEAST], best[C.OPEN] = sought.below, np.inf
+    best[C.TOLERANCE] = sought.tolerance
+    best[C.ROUNDING] = PROOF_ROUNDING * (size + away)
+    best[C.SIZE], best[C.BUDGET] = size, sought.deadline
+    best[C.ABOVE] = min(sought.above, sought.below)
+    best[C.MEETING] = sought.tolerance if sought.on_meeting else -1.0
+    best[C.MOST_MINIMA] = MOST_LOCAL if sought.above > 0.0 else MOST_TIES
+    best[C.MOST_OPEN] = sought.listed
+    return best, np.empty(C.MINIMUM_REALS * int(best[C.MOST_MINIMA]))
+
+
 def least_distance(
     packed_a: Any, packed_b: Any, pose: Array, senses: tuple[int, int], size: float,
-    budget: int = BUDGET, below: float = np.inf,
+    sought: Sought | None = None,
 ) -> Found:  # fmt: skip
-    """Between two packed solids; `pose` (12,) is B's in A's frame, R by rows and p.
-
-    `below`: distances from here on are not looked for.
-    """
-    best = np.zeros(C.BEST_REALS)
-    best[C.LEAST], best[C.OPEN] = below, np.inf
-    best[C.TOLERANCE] = PROOF_TOLERANCE * size
-    best[C.ROUNDING] = PROOF_ROUNDING * (size + float(np.linalg.norm(pose[9:])))
-    best[C.SIZE], best[C.BUDGET] = size, budget
-    minima = np.zeros(C.MINIMUM_REALS * C.MOST_MINIMA)
+    """Between two packed solids; `pose` (12,) is B's in A's frame, R by rows and p."""
+    asked = Sought(PROOF_TOLERANCE * size) if sought is None else sought
+    best, minima = started(asked, size, float(np.linalg.norm(pose[9:])))
     counts = np.zeros(8, dtype=np.int64)
     boundary_distance(
         (packed_a, packed_b),
@@ -75,16 +120,19 @@ def least_distance(
         _scratch(threading.get_ident()),
         counts,
     )
-    upper = float(best[C.LEAST])
-    rows = minima.reshape(-1, C.MINIMUM_REALS)[: int(best[C.N_MINIMA])]
-    rows = rows[rows[:, 0] <= upper + best[C.TOLERANCE]]
+    upper, tolerance = float(best[C.LEAST]), float(best[C.TOLERANCE])
+    rows = minima.reshape(-1, C.MINIMUM_REALS)[: int(best[C.N_MINIMA]), : C.POINTS]
+    rows = rows[rows[:, 0] <= max(upper + tolerance, best[C.ABOVE])]
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     met = bool(best[C.MET])
-    lower = 0.0 if met else max(0.0, min(upper - best[C.TOLERANCE], float(best[C.OPEN])))
+    lower = 0.0 if met else max(0.0, min(upper - tolerance, float(best[C.OPEN])))
     row = np.array([upper, best[C.LEAF_A], best[C.LEAF_B], *best[C.AT : C.AT + 4], 0.0])
+    left = best[C.OPEN_ROWS :].reshape(-1, C.OPEN_REALS)[: int(best[C.N_OPEN])]
+    left = left[np.argsort(left[:, -1], kind="stable")]
     return Found(
-        upper, lower, float(best[C.TOLERANCE]), met, rows, row, tuple(int(n) for n in counts[:5])
-    )
+        upper, lower, tolerance, met, rows, row, left, int(best[C.LOST]),
+        tuple(int(n) for n in counts[:5]), int(best[C.N_OPEN]),
+    )  # fmt: skip
 
 
 def leaf_jet_of(packed: Any, leaf: int, u: float, v: float) -> Array:
@@ -92,6 +140,3 @@ def leaf_jet_of(packed: Any, leaf: int, u: float, v: float) -> Array:
     out = np.zeros(18)
     solid_point(packed, IDENTITY, int(leaf), float(u), float(v), out)
     return out.reshape(6, 3)
-
-
-EITHER = S.EITHER

@@ -8,15 +8,16 @@ from itertools import islice
 import numpy as np
 
 from standoff.geometry.validation import Array
-from standoff.kernels.entries.solids import nearest_in_leaves
+from standoff.kernels.entries.solids import gradient, nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.motion.pose import Pose
 from standoff.solids.answer import NearestPair
-from standoff.solids.spatial.minimum import Found, leaf_jet_of, least_distance
+from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import HAS_DIRECTION
+from standoff.solids.spatial.tolerances import COLLAPSED_FRAME, HAS_DIRECTION, LEAST_LENGTH
 
 
 @dataclass(frozen=True)
@@ -51,11 +52,28 @@ class PlacedPair:
     def in_b(self, points: Array) -> Array:
         return np.asarray((points - self.pb) @ self.rb)
 
-    def least(self, senses: tuple[int, int], budget: int, below: float = np.inf) -> Found:
+    @property
+    def slack(self) -> float:
+        """Of both solids, length."""
+        return self.a.slack + self.b.slack
+
+    @property
+    def poses(self) -> tuple[Array, Array]:
+        """World poses (12,) of both: R by rows, p."""
+        return (
+            np.concatenate([self.ra.ravel(), self.pa]),
+            np.concatenate([self.rb.ravel(), self.pb]),
+        )
+
+    def least(self, senses: tuple[int, int], sought: Sought) -> Found:
         """The search between both boundaries, each seen from outside or inside."""
         return least_distance(
-            self.a.packed, self.b.packed, self.relative, senses, self.size, budget, below
+            self.a.packed, self.b.packed, self.relative, senses, self.size, sought
         )
+
+    def moved(self, way: Array) -> PlacedPair:
+        """The same pair with B moved by a world vector."""
+        return PlacedPair(self.a, self.b, Pose(self.ra, self.pa), Pose(self.rb, self.pb + way))
 
     def place(self, row: Array, senses: tuple[int, int]) -> Place:
         """Of a row (distance, leaf_a, leaf_b, parameters)."""
@@ -69,25 +87,43 @@ class PlacedPair:
         return Place(row, x, y, normal)
 
     def _normal_at(self, row: Array, senses: tuple[int, int]) -> Array:
-        """From a face, where the points are too near to each other for a direction."""
+        """From a face, or across two edges, where the points are too near to each other for a
+        direction."""
         sides = (
             (self.a, int(row[1]), row[3:5], self.ra, 1.0 if senses[0] == S.OUTSIDE else -1.0),
             (self.b, int(row[2]), row[5:7], self.rb, -1.0 if senses[1] == S.OUTSIDE else 1.0),
         )
+        across = self._across_edges(row)
         ordered = sorted(sides, key=lambda side: -side[0].leaves[side[1]].dim)
         for solid, leaf, (u, v), rotation, sign in ordered:
             out = outside_direction(solid, leaf, float(u), float(v))
             if out is not None:
                 found = sign * (rotation @ out)
+                if across is not None:
+                    found = across if across @ found > 0.0 else -across
                 return np.asarray(found / np.linalg.norm(found))
         return np.array([0.0, 0.0, 1.0])
+
+    def _across_edges(self, row: Array) -> Array | None:
+        """Normal to both edges of a row; None where it has no two, or they are parallel."""
+        ways = []
+        for solid, leaf, at, rotation in (
+            (self.a, int(row[1]), row[3:5], self.ra),
+            (self.b, int(row[2]), row[5:7], self.rb),
+        ):
+            if solid.leaves[leaf].dim != 1:
+                return None
+            tangent = rotation @ leaf_jet_of(solid.packed, leaf, *at)[1]
+            ways.append(tangent / max(float(np.linalg.norm(tangent)), LEAST_LENGTH))
+        normal = np.cross(*ways)
+        return normal if float(np.linalg.norm(normal)) > COLLAPSED_FRAME else None
 
     def nearest_pair(self, place: Place, lower: float) -> NearestPair:
         row = place.row
         leaf_a, leaf_b = int(row[1]), int(row[2])
         return NearestPair(
             place.distance,
-            min(lower, place.distance),
+            min(max(lower, float(row[BOUND])), place.distance) - self.slack,
             place.point_a,
             place.point_b,
             place.normal,
@@ -99,10 +135,10 @@ class PlacedPair:
 
     def gradient(self, place: Place) -> Array:
         """(12,) by unit twists (v_A, omega_A, v_B, omega_B), world axes."""
-        n = place.normal
-        return np.concatenate(
-            [-n, -np.cross(place.point_a - self.pa, n), n, np.cross(place.point_b - self.pb, n)]
-        )
+        to = np.zeros(12)
+        arms = [place.normal, place.point_a - self.pa, place.point_b - self.pb]
+        gradient(np.concatenate(arms), False, to)
+        return to
 
     def found_from(self, row: Array, start: Array) -> Array | None:
         """A row of the local minimum that Newton's method finds in a row's leaves from other

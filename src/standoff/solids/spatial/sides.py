@@ -53,7 +53,7 @@ def _at_vertex(solid: SolidModel, vertex: int) -> Array | None:
     boundary = solid.boundary
     total = np.zeros(3)
     for chart in range(int(boundary.ints[L.N_CHARTS])):
-        out, into, normal = _corner(solid, chart, vertex)
+        out, into, normal = corner_of(solid, chart, vertex)
         if not out and not into:
             continue
         if len(out) != 1 or len(into) != 1 or normal is None:
@@ -68,7 +68,7 @@ def _at_vertex(solid: SolidModel, vertex: int) -> Array | None:
     return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
-def _corner(
+def corner_of(
     solid: SolidModel, chart: int, vertex: int
 ) -> tuple[list[Array], list[Array], Array | None]:
     """Directions from a vertex along the edges of a chart's loop that leave it and that arrive,

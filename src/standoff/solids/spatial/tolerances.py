@@ -66,6 +66,15 @@ within a face it is 1. At a sharp edge one face's normal is nearly against the o
 BESIDE_EDGE: Final = 1e-2
 """Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
 is; less is told by a ray."""
-PARTED: Final = 4.0
-"""Times the tolerance: a solid is moved so far along the normal to see whether it then is apart; if
-so, no more than that is shared, and they touch."""
+COLLAPSED_SIDE: Final = 1e-9
+"""Of the size: a side of a face's rectangle nearer to a vertex than this is collapsed to it."""
+IN_CONTACT: Final = 1e-3
+"""Sine of the angle between the normals at a place of contact: where boundaries are nearer than the
+tolerance their normals differ by up to its root, 1e-5, and by more where they bend sharply. At
+places where they cross it is far greater."""
+ONE_AXIS: Final = 1e-12
+"""Sine of the angle of two axes, and part of the size between them, below which they are one: a few
+roundings of their coordinates."""
+TURN_ROUNDING: Final = 1e-9
+"""Sine and radians: for the rounding of computed normals, and of an axis that differs from another
+by `ONE_AXIS`, in the turn of an edge."""

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +15,7 @@ from standoff.tracking.status import Status
 from standoff_studies.soak.solid_outlines import Array
 from standoff_studies.soak.solid_poses import Known, relative_poses
 from standoff_studies.soak.solid_search import Bounds
-from standoff_studies.soak.solid_truth import Hollowed
+from standoff_studies.soak.solid_truth import Hollowed, signed
 
 Ask = Callable[[Any, Any, Array, Array], SolidProximity]
 Log = Callable[[str], None]
@@ -26,10 +28,10 @@ END = 1e-8
 """Of both sizes: how far the ends of a continuum may be off."""
 DEEP = 1e-7
 """Of both sizes: a boundary that is so deep in the other solid does not only touch it."""
+KNOWN = 1e-4
+"""Of both sizes: how narrow the judge's own interval is where it counts as known."""
 SWAPPED = 4
 """One of so many poses is asked again with the solids in turn."""
-HEAVY = ("vase", "egg")
-"""Parts whose closed form takes long: they are sampled, where only one of a pair is."""
 
 APART = (Status.CONVERGED, Status.CONTINUUM)
 OPEN = (Status.WITHIN, Status.DEADLINE)
@@ -55,9 +57,7 @@ class Case(NamedTuple):
     def depths(self, point: Array) -> tuple[float, float]:
         """Signed distances of a world point from A and from B."""
         spots = [(point - p[:3, 3]) @ p[:3, :3] for p in (self.pose_a, self.pose_b)]
-        truths = self.a.part.truth, self.b.part.truth
-        first, second = (float(t.signed(s[None])[0]) for t, s in zip(truths, spots, strict=True))
-        return first, second
+        return self.a.depth(spots[0]), self.b.depth(spots[1])
 
     @property
     def meets(self) -> bool:
@@ -75,13 +75,21 @@ class Case(NamedTuple):
         return next((name for name, least in BINS if gap >= least), "touching")
 
 
-class Verdict(NamedTuple):
-    """Counts: answers by bin and status, faults by their kind."""
+@dataclass(frozen=True)
+class Verdict:
+    """Counts: answers by bin and status, faults by their kind, poses with one, those of them whose
+    answer is certified, and poses whose distance the judge itself knows to 1e-4 of the size; the
+    greatest excess of a certified distance over the judge's, of the size; seconds."""
 
-    poses: int
-    statuses: Counter[tuple[str, str]]
-    faults: Counter[str]
-    silent: int
+    poses: int = 0
+    statuses: Counter[tuple[str, str]] = field(default_factory=Counter)
+    faults: Counter[str] = field(default_factory=Counter)
+    wrong: int = 0
+    silent: int = 0
+    known: int = 0
+    excess: float = 0.0
+    asked: float = 0.0
+    judged: float = 0.0
 
     @property
     def sound(self) -> bool:
@@ -92,38 +100,60 @@ class Verdict(NamedTuple):
             self.poses + other.poses,
             self.statuses + other.statuses,
             self.faults + other.faults,
+            self.wrong + other.wrong,
             self.silent + other.silent,
+            self.known + other.known,
+            max(self.excess, other.excess),
+            self.asked + other.asked,
+            self.judged + other.judged,
         )
 
     def __str__(self) -> str:
-        told = ", ".join(f"{count} {name}" for name, count in sorted(self.faults.items()))
-        return f"{self.poses:,} poses; {told or 'none'} wrong; {self.silent} of them certified"
-
-
-def nothing() -> Verdict:
-    return Verdict(0, Counter(), Counter(), 0)
+        kinds = "".join(f", {count} {name}" for name, count in sorted(self.faults.items()))
+        each = 1e3 / max(self.poses, 1)
+        told = {name: 0 for _, name in sorted(self.statuses)}
+        for (_, name), count in self.statuses.items():
+            told[name] += count
+        return (
+            f"{self.poses:,} poses; {self.wrong} wrong{kinds}; {self.silent} of them certified; "
+            f"{told}; the judge knows {self.known:,} to 1e-4; worst excess {self.excess:.1e} of "
+            f"the size; {each * self.asked:.1f} ms a pose, judge {each * self.judged:.1f}"
+        )
 
 
 def judged(
     a: Known, b: Known, solids: tuple[Any, Any], poses: tuple[Array, Array], ask: Ask, log: Log
 ) -> Verdict:
     """Ask for all poses of a pair, and judge each answer."""
+    begun = time.perf_counter()
     cases = truths(a, b, *poses)
-    statuses: Counter[tuple[str, str]] = Counter()
-    faults: Counter[str] = Counter()
-    silent = 0
+    verdict = Verdict(judged=time.perf_counter() - begun)
     for k, (pose_a, pose_b, true, inside, cavity) in enumerate(cases):
+        begun = time.perf_counter()
         told = ask(*solids, pose_a, pose_b)
+        asked = time.perf_counter()
         case = Case(a, b, pose_a, pose_b, true, inside, cavity, told)
         found = faults_of(case)
+        judging = time.perf_counter() - asked
         if k % SWAPPED == 0:
             found += _swap_faults(case, ask(*solids[::-1], pose_b, pose_a))
-        statuses[case.bin, told.status.name] += 1
-        faults.update({name for name, _ in found})
-        silent += bool(found) and told.certified
+        apart = told.status in (*APART, Status.CONTAINED) and not case.meets
+        verdict = verdict.plus(
+            Verdict(
+                1,
+                Counter({(case.bin, told.status.name): 1}),
+                Counter({name for name, _ in found}),
+                bool(found),
+                bool(found) and told.certified,
+                bool(true.upper - true.lower <= KNOWN * case.size),
+                (told.distance - float(true.upper)) / case.size if apart else 0.0,
+                asked - begun,
+                judging,
+            )
+        )
         if found:
             log(described(case, found))
-    return Verdict(len(cases), statuses, faults, silent)
+    return verdict
 
 
 def truths(
@@ -131,33 +161,28 @@ def truths(
 ) -> list[tuple[Array, Array, Bounds, str, bool]]:
     """Of each pose the bounds of the distance of the boundaries, which solid is inside the other's
     material, and whether one is in the other's cavity."""
-    turned = b.part.name in HEAVY and a.part.name not in HEAVY
-    own, other = (b, a) if turned else (a, b)
-    poses = (poses_b, poses_a) if turned else (poses_a, poses_b)
-    turns, shifts = relative_poses(*poses)
-    bounds = own.sampled.least(other.part.truth, turns, shifts)
-    if own.part.name not in HEAVY:
-        # a valley that is narrow and slanted on one of them lies along an edge of the other
-        back = np.swapaxes(turns, 1, 2)
-        again = other.sampled.least(own.part.truth, back, -np.einsum("nij,nj->ni", back, shifts))
-        bounds = bounds._replace(
-            lower=np.maximum(bounds.lower, np.minimum(again.lower, bounds.upper)),
-            upper=np.minimum(bounds.upper, again.upper),
-        )
+    turns, shifts = relative_poses(poses_a, poses_b)
+    bounds = a.sampled.least(b.sampled.boundary, turns, shifts)
+    # a valley that is narrow and slanted on one of them lies along an edge of the other
+    back = np.swapaxes(turns, 1, 2)
+    again = b.sampled.least(a.sampled.boundary, back, -np.einsum("nij,nj->ni", back, shifts))
+    bounds = bounds._replace(
+        lower=np.maximum(bounds.lower, np.minimum(again.lower, bounds.upper)),
+        upper=np.minimum(bounds.upper, again.upper),
+    )
     found = []
     for k, (pose_a, pose_b) in enumerate(zip(poses_a, poses_b, strict=True)):
         true = Bounds(*(column[k] for column in bounds))
         inside, cavity = "", False
         if true.upper > 0.0:
-            x = own.sampled.start.point[0] @ turns[k].T + shifts[k]
-            y = (other.sampled.start.point[0] - shifts[k]) @ turns[k]
-            names = ("B", "A") if turned else ("A", "B")
+            x = a.sampled.points[0] @ turns[k].T + shifts[k]
+            y = (b.sampled.points[0] - shifts[k]) @ turns[k]
             if true.above < 0.0:
-                inside = names[0]
-            elif float(own.part.truth.signed(y[None])[0]) < 0.0:
-                inside = names[1]
+                inside = "A"
+            elif a.depth(y) < 0.0:
+                inside = "B"
             else:
-                cavity = _holds(other, x) or _holds(own, y)
+                cavity = _holds(b, x) or _holds(a, y)
         found.append((pose_a, pose_b, true, inside, cavity))
     return found
 
@@ -165,7 +190,7 @@ def truths(
 def _holds(solid: Known, point: Array) -> bool:
     """Is a point in the solid's cavity?"""
     truth = solid.part.truth
-    return isinstance(truth, Hollowed) and float(truth.cavity.signed(point[None])[0]) < 0.0
+    return isinstance(truth, Hollowed) and float(signed(truth.cavity, point[None])[0]) < 0.0
 
 
 def faults_of(case: Case) -> list[tuple[str, str]]:
@@ -204,10 +229,10 @@ def _status_faults(case: Case) -> list[tuple[str, str]]:
         # which of them it is lies within the tolerance
         right = {Status.TOUCHING, Status.OVERLAPPING, *OPEN, *APART, Status.CONTAINED}
         known = "touching"
-    elif case.inside or case.cavity:
-        right, known = {Status.CONTAINED, *OPEN}, f"inside {case.inside or 'a cavity'}"
+    elif case.inside:
+        right, known = {Status.CONTAINED, *OPEN}, f"inside {case.inside}"
     else:
-        right, known = {*APART, *OPEN}, "apart"
+        right, known = {*APART, *OPEN}, "in a cavity" if case.cavity else "apart"
     found = []
     if status not in right:
         found.append(("status", f"{status.name}, but {known} by {float(case.true.upper)!r}"))

@@ -3,92 +3,48 @@
 Pairs of solids that need not be convex, at gaps of 1 to 1e-6, aligned and nearly so, in overlap and
 inside one another. Every answer is judged by `solid_judge`: no bound may exclude what an exhaustive
 search finds on sampled boundaries, no status may be wrong, a common ball is inside both solids.
-With --points, signed distances of points are judged too. With --occ, so many poses are compared
-with OpenCASCADE's ``BRepExtrema_DistShapeShape``, which `cadquery-ocp-novtk` has.
 
-Every half minute a line says what was judged so far: it stands where a run is cut off. A fault is
-told with the poses that repeat it, and the exit code is then 1.
+Block k of a seed, twenty poses of a pair, is always the same: ``--first`` goes on where a run was
+cut off by ``--minutes``. Every half minute a line says what was judged. A fault is told with the
+poses that repeat it, and the exit code is then 1.
 """
 
 from __future__ import annotations
 
-import argparse
-import time
+from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
 from standoff.cli.terminal import tell
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.spatial.solid import Solid
-from standoff_studies.soak import solid_judge, solid_occ, solid_points
+from standoff_studies.soak import blocks, solid_judge
 from standoff_studies.soak.solid_judge import Verdict
 from standoff_studies.soak.solid_parts import MAKERS
 from standoff_studies.soak.solid_poses import Known, draw_poses, known, pairs_of
 
 BLOCK = 20
 """Poses of a pair that are judged at once."""
-TELL = 30.0
-"""Seconds between two lines."""
-TOLD = 40
-"""Faults that are told in full."""
-POINT_PARTS = ("bracket", "elbow", "hollow", "plate", "ring")
 
 
-class Stock:
-    """Parts and their solids, each made when it is first asked for."""
-
-    def __init__(self) -> None:
-        self.parts: dict[str, Known] = {}
-        self.solids: dict[str, Solid] = {}
-
-    def get(self, name: str) -> tuple[Known, Solid]:
-        if name not in self.parts:
-            self.parts[name] = known(MAKERS[name]())
-            self.solids[name] = Solid(self.parts[name].part.boundary)
-        return self.parts[name], self.solids[name]
+@cache
+def made(name: str) -> tuple[Known, Solid]:
+    """A part and its solid, made when first asked for."""
+    part = known(MAKERS[name]())
+    return part, Solid(part.part.boundary)
 
 
-def run(stock: Stock, pairs: list[tuple[str, str]], poses: int, seed: int) -> Verdict:
-    """Judge so many poses, the same number of every pair, and tell how far it is."""
-    verdict, told, faults = solid_judge.nothing(), time.monotonic(), 0
-    begun = told
-
-    def log(text: str) -> None:
-        nonlocal faults
-        faults += 1
-        if faults <= TOLD:
-            tell(text)
-
-    blocks = -(-poses // BLOCK)
-    for number in range(blocks):
-        a, b = pairs[number % len(pairs)]
-        rng = np.random.default_rng([seed, number])
-        (one, first), (two, second) = stock.get(a), stock.get(b)
-        drawn = draw_poses(one, two, min(BLOCK, poses - number * BLOCK), rng)
-        verdict = verdict.plus(
-            solid_judge.judged(one, two, (first, second), drawn, spatial_distance, log)
-        )
-        now = time.monotonic()
-        if now - told > TELL:
-            told = now
-            each = 1e3 * (now - begun) / verdict.poses
-            tell(f"of {poses:,}: {verdict} ({each:.0f} ms a pose)")
-    return verdict
-
-
-def beside_occ(
-    stock: Stock, pairs: list[tuple[str, str]], poses: int, seed: int
-) -> solid_occ.Comparison:
-    """So many poses at least that are apart, of all pairs in turn."""
-    found, number = solid_occ.Comparison(), 0
-    while found.poses < poses:
-        a, b = pairs[number % len(pairs)]
-        rng = np.random.default_rng([seed, number, 2])
-        (one, first), (two, second) = stock.get(a), stock.get(b)
-        drawn = draw_poses(one, two, BLOCK, rng)
-        found = found.plus(solid_occ.compared(one, two, (first, second), drawn, spatial_distance))
-        number += 1
-    return found
+def judge_block(
+    number: int, seed: int, pairs: list[tuple[str, str]], poses: int | None = None, ask: Any = None
+) -> tuple[Verdict, list[str]]:
+    """A block of poses of a pair, and its faults' lines."""
+    (one, first), (two, second) = (made(name) for name in pairs[number % len(pairs)])
+    drawn = draw_poses(one, two, poses or BLOCK, np.random.default_rng([seed, number]))
+    lines: list[str] = []
+    ask = ask or spatial_distance
+    verdict = solid_judge.judged(one, two, (first, second), drawn, ask, lines.append)
+    return verdict, [f"seed {seed}, block {number}: {line}" for line in lines]
 
 
 def table(verdict: Verdict) -> str:
@@ -106,30 +62,15 @@ def table(verdict: Verdict) -> str:
 
 def main() -> int:
     """Read the options, run, and tell; 1 if anything was wrong."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--poses", type=int, default=100_000)
-    parser.add_argument("--points", type=int, default=0)
-    parser.add_argument("--occ", type=int, default=0)
-    parser.add_argument("--seed", type=int, default=1)
+    parser = blocks.options(__doc__, "poses", 100_000, BLOCK)
     parser.add_argument("--parts", nargs="+", default=list(MAKERS), choices=list(MAKERS))
     given = parser.parse_args()
-    stock, begun = Stock(), time.monotonic()
-    verdict = run(stock, pairs_of(given.parts), given.poses, given.seed)
-    sound = verdict.sound
-    tell(f"{len(pairs_of(given.parts))} pairs, {time.monotonic() - begun:.0f} s: {verdict}")
+    work = partial(judge_block, seed=given.seed, pairs=pairs_of(given.parts))
+    verdict = blocks.run(given, BLOCK, work)
+    if verdict is None:
+        return 0
     tell(table(verdict))
-    if given.points:
-        names = [name for name in POINT_PARTS if name in given.parts]
-        for name in names:
-            count = -(-given.points // len(names))
-            found = solid_points.judged(*stock.get(name), count, given.seed)
-            tell(f"{name}: {found}")
-            sound &= found.sound
-    if given.occ:
-        compare = beside_occ(stock, pairs_of(solid_occ.PARTS), given.occ, given.seed)
-        tell(str(compare))
-        sound &= not compare.library
-    return 0 if sound else 1
+    return 0 if verdict.sound else 1
 
 
 if __name__ == "__main__":

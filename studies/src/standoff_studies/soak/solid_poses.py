@@ -8,9 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from standoff_studies.soak import solid_forms
 from standoff_studies.soak.solid_outlines import Array
 from standoff_studies.soak.solid_parts import Part
 from standoff_studies.soak.solid_search import Sampled
+from standoff_studies.soak.solid_truth import signed
 
 Rng = np.random.Generator
 
@@ -47,22 +49,26 @@ class Known(NamedTuple):
     inner_spots: Array
     inner_ways: Array
 
+    def depth(self, point: Array) -> float:
+        """The signed distance of a point, own frame."""
+        return float(solid_forms.signed(self.sampled.boundary.form, *(float(x) for x in point)))
+
 
 def known(part: Part, seed: int = 0) -> Known:
     """A part's cells, and places of its boundary by faces, edges and vertices."""
     rng = np.random.default_rng(seed)
     size = part.boundary.size
     sampled = Sampled(part.truth, size)
-    rows = rng.integers(len(sampled.start.radius), size=4000)
-    points = sampled.start.point[rows] + 0.08 * size * rng.normal(size=(4000, 3))
-    signed = part.truth.signed(points)
+    rows = rng.integers(len(sampled.points), size=4000)
+    points = sampled.points[rows] + 0.08 * size * rng.normal(size=(4000, 3))
+    told = signed(part.truth, points)
     steps = STEP * size * np.eye(3)
-    slope = [part.truth.signed(points + s) - part.truth.signed(points - s) for s in steps]
+    slope = [signed(part.truth, points + s) - signed(part.truth, points - s) for s in steps]
     way = np.stack(slope, axis=1) / (2.0 * STEP * size)
-    spots = points - signed[:, None] * way
+    spots = points - told[:, None] * way
     length = np.linalg.norm(way, axis=1)
-    good = (np.abs(part.truth.signed(spots)) < 1e-6 * size) & (np.abs(length - 1.0) < 1e-4)
-    out, within = good & (signed > 0.0), good & (signed < 0.0)
+    good = (np.abs(signed(part.truth, spots)) < 1e-6 * size) & (np.abs(length - 1.0) < 1e-4)
+    out, within = good & (told > 0.0), good & (told < 0.0)
     way /= np.maximum(length, 0.5)[:, None]
     return Known(part, size, sampled, spots[out], way[out], spots[within], -way[within])
 
@@ -126,11 +132,11 @@ def _facing(way: Array, onto: Array, rng: Rng) -> Array:
 
 def _crossing(a: Known, b: Known, pose: Array) -> bool:
     """Does the sampled boundary of one of them have points on both sides of the other's?"""
-    points = b.sampled.start.point @ pose[:3, :3].T + pose[:3, 3]
-    back = (a.sampled.start.point - pose[:3, 3]) @ pose[:3, :3]
+    points = b.sampled.points @ pose[:3, :3].T + pose[:3, 3]
+    back = (a.sampled.points - pose[:3, 3]) @ pose[:3, :3]
     for truth, rows in ((a.part.truth, points), (b.part.truth, back)):
-        signed = truth.signed(rows)
-        if signed.min() < 0.0 < signed.max():
+        told = signed(truth, rows)
+        if told.min() < 0.0 < told.max():
             return True
     return False
 

@@ -1,0 +1,1 @@
+"""Pictures of solids that need not be convex, and of the answers about them."""

@@ -1,0 +1,50 @@
+"""Touching is proven by parting: B is moved a few tolerances off A, along all contact normals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from standoff.solids.tolerances import NO_WAY_OUT, PARTED_BY
+
+Array = NDArray[np.float64]
+
+
+def way_out(normals: Array) -> Array | None:
+    """The unit vector whose least component along unit normals (n, 3) is the greatest; None where
+    there is none along all of them.
+
+    It is along the point of the normals' hull that is nearest to the origin.
+    """
+    if not len(normals):
+        return None
+    # least |normals' weighted mean|, the weights at least 0; their sum, nearly 1, cancels out
+    system = np.vstack([normals.T, np.ones(len(normals))])
+    weights, _ = scipy.optimize.nnls(system, np.array([0.0, 0.0, 0.0, 1.0]))
+    mean = normals.T @ weights
+    size = float(np.linalg.norm(mean))
+    if size <= NO_WAY_OUT or float((normals @ mean).min()) <= NO_WAY_OUT * size:
+        return None
+    return np.asarray(mean / size)
+
+
+def parted(normals: Array, tolerance: float, apart: Callable[[Array], bool]) -> float:
+    """A length by which moving B is proven to part two solids; inf where that is not proven.
+
+    Parameters
+    ----------
+    normals : (n, 3) array
+        Unit vectors from A to B at the places where they touch.
+    tolerance : float
+        Each place is opened by `PARTED_BY` times this length.
+    apart : callable
+        Whether the solids are proven to be apart with B moved by a vector (3,).
+    """
+    way = way_out(normals)
+    if way is None:
+        return float(np.inf)
+    length = PARTED_BY * tolerance / float((normals @ way).min())
+    return length if apart(length * way) else float(np.inf)
