@@ -87,7 +87,10 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport]:
                 f"edges miss their faces by up to {bound:.3g}, the file allows {allowed:.3g}"
             )
         residual = max(joined.residual, bound + pieces.moved)
-        boundary = made_boundary(report.name, replace(joined, residual=residual))
+        # what parts miss each other by counts from here on, no longer what they were allowed to
+        within = max(residual, JOIN_TOLERANCE * size)
+        closing = replace(joined, residual=residual, tolerance=within)
+        boundary = made_boundary(report.name, closing)
     except BodyError as error:
         raise Refused(f"{error}{_place(error, pieces)}") from error
     found = boundary.check()

@@ -17,6 +17,7 @@ from standoff.cad.curves import (
     Converted,
     NoExactForm,
     approximated,
+    breaks_of,
     basis_of,
     interpolated,
     radii,
@@ -163,7 +164,9 @@ def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
     def places(ts: Array) -> Array:
         return on.own(np.array([coordinates(flat.Value(float(t))) for t in edge.own(ts)]))
 
-    found, knots = approximated(places, edge.curve.first, edge.curve.last)
+    first, last = edge.own(np.array([edge.curve.first, edge.curve.last])).tolist()
+    breaks = breaks_of(flat, first, last) * edge.scale + edge.shift
+    found, knots = approximated(places, _over(breaks, edge.curve))
     return NurbsPcurve(straightened(found), knots)
 
 
