@@ -140,8 +140,8 @@ def _check(shape: Any, size: float) -> None:
         )
     if volume_of(shape) < 0.0:
         raise Refused(
-            f"it is inside out: {len(faces)} faces, from face 1 (a {kind_of(faces[0])}) on, face "
-            "into the solid; reverse its shell where it is made (OpenCASCADE: shape.Reversed())"
+            f"it is inside out: its {len(faces)} faces, from face 1 (a {kind_of(faces[0])}) on, "
+            "face into the solid; heal=True turns it"
         )
     faults = faults_of(shape)
     if faults:

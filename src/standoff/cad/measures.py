@@ -9,6 +9,7 @@ import numpy as np
 from OCP.TopoDS import TopoDS_Edge
 
 from standoff.cad.opencascade import coordinates, explored
+from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import QUADRATURE
 
 WRONG = (
@@ -86,24 +87,36 @@ def faults_of(shape: Any) -> list[str]:
         if not analyzer.IsValid(shell):
             found += _told(f"shell {number}", [BRepCheck_Shell(shell).Orientation()])
     for number, face in enumerate(explored(shape, "face"), 1):
-        if not analyzer.IsValid(face):
-            statuses = [BRepCheck_Face(face).IntersectWires()]
-            for wire in explored(face, "wire"):
-                first, second = TopoDS_Edge(), TopoDS_Edge()
-                statuses.append(BRepCheck_Wire(wire).SelfIntersect(face, first, second))
-            found += _told(f"face {number}", statuses)
+        if analyzer.IsValid(face):
+            continue
+        wires = list(explored(face, "wire"))
+        statuses = [BRepCheck_Face(face).IntersectWires()]
+        near = next(explored(wires[-1], "edge"))
+        for wire in wires:
+            first, second = TopoDS_Edge(), TopoDS_Edge()
+            statuses.append(BRepCheck_Wire(wire).SelfIntersect(face, first, second))
+            near = near if first.IsNull() else first
+        found += _told(f"face {number} (a {kind_of(face)})", statuses, f" near {_middle(near)}")
     return found
 
 
-def _told(place: str, statuses: list[Any]) -> list[str]:
+def _told(place: str, statuses: list[Any], where: str = "") -> list[str]:
     names = sorted({status.name for status in statuses} & set(WRONG))
-    return [f"{place}: {name.removeprefix('BRepCheck_')}" for name in names]
+    return [f"{place}: {name.removeprefix('BRepCheck_')}{where}" for name in names]
+
+
+def _middle(edge: Any) -> str:
+    """The point in the middle of an edge."""
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+
+    curve = BRepAdaptor_Curve(edge)
+    x, y, z = coordinates(curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter())))
+    return f"({x:.6g}, {y:.6g}, {z:.6g})"
 
 
 def free_edges(shape: Any) -> list[str]:
     """Where a shell is open: middles of edges that bound one face."""
     from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
 
     users: dict[Any, int] = {}
     kept: dict[Any, Any] = {}
@@ -112,11 +125,4 @@ def free_edges(shape: Any) -> list[str]:
             if not BRep_Tool.Degenerated_s(edge):
                 users[hash(edge)] = users.get(hash(edge), 0) + 1
                 kept[hash(edge)] = edge
-    found = []
-    for key, times in users.items():
-        if times == 1:
-            curve = BRepAdaptor_Curve(kept[key])
-            middle = 0.5 * (curve.FirstParameter() + curve.LastParameter())
-            x, y, z = coordinates(curve.Value(middle))
-            found.append(f"({x:.6g}, {y:.6g}, {z:.6g})")
-    return found
+    return [_middle(kept[key]) for key, times in users.items() if times == 1]
