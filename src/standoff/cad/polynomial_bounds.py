@@ -2,8 +2,8 @@
 edge, where that is a polynomial between known parameters.
 
 With S = A / a, p polynomial and C = B / b, the difference times a b is N = A b - B a, a polynomial
-of known degree n. By the Lebesgue constant of its Chebyshev points, |N| <= (1 +
-2/pi ln(n + 1)) times its greatest value there (Rivlin 1974): a bound from n + 1 values.
+of known degree n. At m > n Chebyshev points, |N| <= its greatest value there / cos(pi n / 2 m)
+(Ehlich and Zeller 1964), for each component in any direction, and so for its length.
 """
 
 from __future__ import annotations
@@ -18,6 +18,9 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+
+# Chebyshev points for each degree: the bound is above the greatest value there by 8 % at most.
+POINTS = 4
 
 
 def polynomial_bound(pcurve: Pcurve, curve: NurbsCurve, surface: Surface) -> float | None:
@@ -68,11 +71,12 @@ def _greatest(
 ) -> float:
     """A bound of |S - C| over a piece where a and b are 1, else of a b |S - C| over their greatest
     values."""
-    nodes = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
-    lebesgue = 1.0 + 2.0 / np.pi * np.log(degree + 1.0)
+    count = POINTS * max(degree, 1)
+    nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    between = 1.0 / np.cos(0.5 * np.pi * degree / count)
     ts = 0.5 * (sum(over) + nodes * (over[1] - over[0]))
     away = surface.points(pcurve.places(ts)) - curve.points(ts)
-    return float(lebesgue * np.linalg.norm(away, axis=1).max())
+    return float(between * np.linalg.norm(away, axis=1).max())
 
 
 def _polynomial(pcurve: Pcurve) -> bool:
