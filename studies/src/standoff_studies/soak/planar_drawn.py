@@ -17,6 +17,8 @@ Poses = tuple[so.Pose, so.Pose]
 
 PER_LENGTH = 400
 """Samples along a unit of length, of a solid of size 1."""
+CURVES = 10.0, 400.0
+"""Of a loop, least and most."""
 HOLES, SMALL = 0.3, 0.25
 """Shares of solids with a hole, and of small ones, which have room in others."""
 GAPS = (0.3, 1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9)
@@ -82,7 +84,7 @@ def drawn_curve(rng: Rng, p: Array, q: Array) -> Drawn:
 
 def judged(rng: Rng) -> Judged:
     """A drawn solid; loops that meet themselves or each other are drawn anew."""
-    n = round(float(np.exp(rng.uniform(np.log(10.0), np.log(400.0)))))
+    n = round(float(np.exp(rng.uniform(*np.log(CURVES)))))
     scale = rng.uniform(0.05, 0.3) if rng.uniform() < SMALL else 1.0
     while True:
         loops = [drawn_loop(rng, n, scale)]
