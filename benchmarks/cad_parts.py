@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from standoff.cad import PartReport, reports_of
-from standoff.cad.reading import ENDINGS
+from standoff.cad.files import ENDINGS
 
 LIMIT = 120.0
 """Seconds that a file may take."""

@@ -52,7 +52,7 @@ def test_the_first_use_is_told_once_and_later_ones_are_silent(tmp_path: Path) ->
     first, *rest = said(tmp_path)
     assert first == (
         "standoff: compiling the kernels for the geometry of bodies (curve_jet, part 1 of at most "
-        "13): at most about 10 s of one core, kept for next time; `standoff warmup` compiles all "
+        "17): at most about 10 s of one core, kept for next time; `standoff warmup` compiles all "
         "of them ahead ..."
     )
     ended = "standoff: curve_jet compiled in"
@@ -64,7 +64,7 @@ def test_another_part_in_the_next_program_is_told_in_other_words(tmp_path: Path)
     """Of the same work: what a program does not call is compiled in a later one."""
     first, *_ = said(tmp_path)
     other, *_ = said(tmp_path, program=OTHER)
-    assert "(pcurve_jet, part 1 of at most 13)" in other
+    assert "(pcurve_jet, part 1 of at most 17)" in other
     assert first.partition("(")[0] == other.partition("(")[0]
     assert first != other
 

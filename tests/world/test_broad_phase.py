@@ -12,8 +12,8 @@ from draws import draws
 from standoff.kernels.entries import world as kernels
 from standoff.kernels.world import arrays as W
 from standoff.world import broad_phase
-from standoff.world.compound import Piece
 from standoff.world.packed import packed_pieces
+from standoff.world.pieces import Piece
 
 FLOOR = so.shapes.halfspace((0.0, 0.6, 0.8), offset=-0.4)
 

@@ -180,7 +180,7 @@ def test_rules_of_bodies_that_leave_go_with_them() -> None:
         ({}, "a", "give a list of names"),
         ([BALL], [], "give a mapping to bodies"),
         ({}, ["a", "b"], "at least one"),
-        ({"c": 3}, [], "give a Body or a Compound"),
+        ({"c": 3}, [], "give a Body, a Solid or a Compound"),
     ],
 )
 def test_changes_that_are_none(add, remove, told) -> None:

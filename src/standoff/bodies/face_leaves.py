@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import TILE, chart_row, surface_of
 from standoff.bodies.tolerances import BOX_REACH
-from standoff.geometry.bernstein import segment
+from standoff.geometry.bernstein import segments
 from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.pcurve_boxes import bezier_box, pcurve_box
 from standoff.geometry.surfaces import Surface
@@ -121,12 +122,19 @@ def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tu
     if kind == L.BEZIER:
         count = 3 * (int(boundary.reals[at]) + 1)
         points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-        for a, b in pairwise(np.linspace(0.0, 1.0, parts + 1)):
-            yield bezier_box(segment(len(points) - 1, float(a), float(b)) @ points)
+        for part in _equal_parts(len(points) - 1, parts) @ points:
+            yield bezier_box(part)
         return
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
     for a, b in pairwise(np.linspace(first, last, parts + 1)):
         yield pcurve_box(kind, matrix, float(a), float(b))
+
+
+@cache
+def _equal_parts(degree: int, count: int) -> Array:
+    """(count, n, n) matrices to the coefficients on equal parts of [0, 1]."""
+    ends = np.linspace(0.0, 1.0, count + 1)
+    return segments(degree, ends[:-1], ends[1:])
 
 
 def leaves_of(boundary: PackedParts, faces: Sequence[int] | None, widest: float) -> Leaves:

@@ -153,6 +153,18 @@ class Assembly:
         return self.parts[key]
 
     @property
+    def by_name(self) -> dict[str, Part]:
+        """The parts by their names, with a number where another one has it already."""
+        found: dict[str, Part] = {}
+        for part in self.parts:
+            name, count = part.name, 1
+            while name in found:
+                count += 1
+                name = f"{part.name} ({count})"
+            found[name] = part
+        return found
+
+    @property
     def shape(self) -> Boundary | Body:
         """The only part's, in the file's frame."""
         from standoff.errors import CadError

@@ -10,6 +10,18 @@ from standoff.cad.limits import MOST_ENTITIES
 from standoff.checks.real_numbers import shown
 from standoff.errors import CadError, StandoffTypeError
 
+ENDINGS = {
+    ".step": "step",
+    ".stp": "step",
+    ".p21": "step",
+    ".brep": "brep",
+    ".brp": "brep",
+    ".rle": "brep",
+    ".iges": "iges",
+    ".igs": "iges",
+}
+"""The kinds of files by their endings."""
+
 ENTITY = re.compile(rb"(?:^|[;\s])#(\d+)\s*=")
 STEP_START = b"ISO-10303-21"
 STEP_END = b"END-ISO-10303-21"

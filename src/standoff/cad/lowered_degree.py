@@ -24,9 +24,10 @@ Net = tuple[Array, Array | None, Array, Array, float]
 def lowered(points: Array, weights: Array | None, knots_u: Array, knots_v: Array) -> Net:
     """(points, weights, knots_u, knots_v, moved) of a spline of degrees that the kernels have.
 
-    Each span is cut into equal parts and interpolated at Chebyshev points, sides included, so that
-    neighbours keep their common side. `moved` is a bound of how far it is from the given one,
-    length: from the differences of the Bernstein coefficients, which enclose that of the surfaces.
+    Each span is cut into as many equal parts as it needs and interpolated at Chebyshev points,
+    sides included, so that neighbours keep their common side. `moved` is a bound of how far it is
+    from the given one, length: from the differences of the Bernstein coefficients, which enclose
+    that of the surfaces.
     """
     w = np.ones(points.shape[:2]) if weights is None else weights
     h = np.concatenate([points * w[..., None], w[..., None]], axis=2)
@@ -38,35 +39,38 @@ def lowered(points: Array, weights: Array | None, knots_u: Array, knots_v: Array
         if degree <= GREATEST_DEGREE:
             continue
         net = np.moveaxis(h, axis, 0)
-        parts = 1
+        vector = KnotVector(knots[axis], degree)
+        parts = np.ones(len(vector.breaks) - 1, dtype=np.int64)
         while True:
-            found, own, off = _lowered(net, KnotVector(knots[axis], degree), parts)
-            far = _distance(off, found, points)
-            if far <= FITTED_TRIM * size or parts >= MOST_PARTS:
+            found, own, off = _lowered(net, vector, parts)
+            far = np.array([_distance(away, found, points) for away in off])
+            again = (far > FITTED_TRIM * size) & (parts < MOST_PARTS)
+            if not again.any():
                 break
-            parts *= 2
-        h, knots[axis], moved = np.moveaxis(found, 0, axis), own, moved + far
+            parts[again] *= 2
+        h, knots[axis], moved = np.moveaxis(found, 0, axis), own, moved + float(far.max())
     polynomial = weights is None
     return h[..., :3] / h[..., 3:], None if polynomial else h[..., 3], knots[0], knots[1], moved
 
 
-def _lowered(net: Array, vector: KnotVector, parts: int) -> tuple[Array, Array, Array]:
-    """(net, knots, off) along the first axis; off: the greatest differences of the components of
-    homogeneous coefficients, (4,)."""
+def _lowered(net: Array, vector: KnotVector, parts: Array) -> tuple[Array, Array, Array]:
+    """(net, knots, off) along the first axis, each span in so many parts; off: of each span, the
+    greatest differences of the components of homogeneous coefficients, (spans, 4)."""
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(LOWER + 1) / LOWER)
     nodes[0], nodes[-1] = 0.0, 1.0
     solve = np.linalg.inv(bernstein(LOWER, nodes)) @ bernstein(vector.degree, nodes)
     solve[0], solve[-1] = np.eye(vector.degree + 1)[[0, -1]]
     raised = _elevation(LOWER, vector.degree)
     rows: list[Array] = []
-    breaks, off = [], np.zeros(4)
-    for (start, matrix), (a, b) in zip(bezier_spans(vector), pairwise(vector.breaks), strict=True):
+    breaks, off = [], np.zeros((len(parts), 4))
+    spans = zip(bezier_spans(vector), pairwise(vector.breaks), strict=True)
+    for k, ((start, matrix), (a, b)) in enumerate(spans):
         whole = np.tensordot(matrix, net[start : start + vector.degree + 1], 1)
-        for first, last in pairwise(np.linspace(0.0, 1.0, parts + 1)):
+        for first, last in pairwise(np.linspace(0.0, 1.0, int(parts[k]) + 1)):
             part = np.tensordot(segment(vector.degree, float(first), float(last)), whole, 1)
             low = np.tensordot(solve, part, 1)
             away = np.abs(np.tensordot(raised, low, 1) - part)
-            off = np.maximum(off, away.reshape(-1, 4).max(axis=0))
+            off[k] = np.maximum(off[k], away.reshape(-1, 4).max(axis=0))
             rows.append(low if not rows else low[1:])
             breaks.append(a + first * (b - a))
     breaks.append(float(vector.breaks[-1]))

@@ -73,7 +73,7 @@ def _interval_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float)
     proven = 0.0
     for halving in range(MOST_HALVINGS + 1):
         places, which = np.unique(np.concatenate([low, high]), return_inverse=True)
-        at = _misses(pcurve, curve, surface, places)[which]
+        at = misses(pcurve, curve, surface, places)[which]
         at = np.maximum(at[: len(low)], at[len(low) :])
         rest = (high - low) ** 2 / 8.0 * _second(pcurve, flat, curve, surface, Interval(low, high))
         rest = np.where(np.isnan(rest), np.inf, rest)
@@ -90,12 +90,10 @@ def _interval_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float)
     return proven
 
 
-def _misses(piece: Pcurve, curve: Curve, surface: Surface, ts: Array) -> Array:
-    found = []
-    for t in ts:
-        u, v, _ = piece.point(float(t))
-        found.append(np.linalg.norm(surface.jet(u, v)[0] - curve.point(float(t))))
-    return np.array(found)
+def misses(piece: Pcurve, curve: Curve, surface: Surface, ts: Array) -> Array:
+    """(n,) distances of a trimming curve's image from its edge at parameters, length."""
+    away = surface.points(piece.places(ts)) - curve.points(ts)
+    return np.asarray(np.linalg.norm(away, axis=1))
 
 
 def _second(

@@ -56,15 +56,9 @@ def _greatest(
     nodes = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
     lebesgue = 1.0 + 2.0 / np.pi * np.log(degree + 1.0)
     most = float(surface.weights.max() * curve.weights.max())
-    away = [
-        _away(pcurve, curve, surface, t) for t in 0.5 * (sum(over) + nodes * (over[1] - over[0]))
-    ]
-    return float(lebesgue * most * max(away))
-
-
-def _away(pcurve: Pcurve, curve: NurbsCurve, surface: NurbsSurface, t: float) -> float:
-    u, v, _ = pcurve.point(float(t))
-    return float(np.linalg.norm(surface.jet(u, v)[0] - curve.point(float(t))))
+    ts = 0.5 * (sum(over) + nodes * (over[1] - over[0]))
+    away = surface.points(pcurve.places(ts)) - curve.points(ts)
+    return float(lebesgue * most * np.linalg.norm(away, axis=1).max())
 
 
 def _polynomial(pcurve: Pcurve) -> bool:

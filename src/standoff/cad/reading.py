@@ -8,20 +8,11 @@ from time import perf_counter
 from typing import Any
 
 from standoff.cad.assembly import Assembly, Part, PartReport
-from standoff.cad.files import check_lines, check_step, existing
+from standoff.cad.files import ENDINGS, check_lines, check_step, existing
 from standoff.checks.real_numbers import shown
 from standoff.errors import CadError, StandoffError, StandoffTypeError
 
 UNITS = ("mm", "cm", "m", "inch")
-ENDINGS = {
-    ".step": "step",
-    ".stp": "step",
-    ".p21": "step",
-    ".brep": "brep",
-    ".rle": "brep",
-    ".iges": "iges",
-    ".igs": "iges",
-}
 MOST_NAMED = 5
 
 

@@ -22,6 +22,7 @@ from standoff.cad.curves import (
     radii,
     spline_of,
 )
+from standoff.cad.miss_bounds import misses
 from standoff.cad.opencascade import coordinates
 from standoff.cad.surfaces import Carrier
 from standoff.cad.tolerances import CONSTANT, FITTED_TRIM
@@ -98,11 +99,9 @@ def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcur
 def off_surface(curve: Curve, on: Carrier) -> float:
     """How far a curve is from a surface at samples, length: no trimming curve is nearer."""
     assert on.inverse is not None
-    points = np.array(
-        [curve.point(float(t)) for t in np.linspace(curve.first, curve.last, COMPARED)]
-    )
-    feet = [on.surface.jet(float(u), float(v))[0] for u, v in on.inverse(points)]
-    return float(np.linalg.norm(points - np.array(feet), axis=1).max())
+    points = curve.points(np.linspace(curve.first, curve.last, COMPARED))
+    feet = on.surface.points(on.inverse(points))
+    return float(np.linalg.norm(points - feet, axis=1).max())
 
 
 def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
@@ -185,7 +184,7 @@ def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPc
     inverse = on.inverse
 
     def places(ts: Array) -> Array:
-        uv = inverse(np.array([curve.point(float(t)) for t in ts]))
+        uv = inverse(curve.points(ts))
         for k in (0, 1):
             if on.angles[k]:
                 uv[:, k] = np.unwrap(uv[:, k])
@@ -217,11 +216,5 @@ def _fitted(
 
 def miss(pcurve: Pcurve, curve: Curve, surface: Surface) -> float:
     """The greatest distance, at samples, of a trimming curve's image from its edge."""
-    worst = 0.0
-    ends = curve.spans()
-    for a, b in pairwise(ends):
-        for t in np.linspace(a, b, COMPARED):
-            u, v, _ = pcurve.point(float(t))
-            away = surface.jet(u, v)[0] - curve.point(float(t))
-            worst = max(worst, float(np.linalg.norm(away)))
-    return worst
+    ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
+    return float(misses(pcurve, curve, surface, ts).max())

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from standoff.bodies.drawing.body_view import LIGHT, across, direction_to_viewer, frame
 from standoff.bodies.drawing.pair_picture import USUAL_VIEW, seen_from
-from standoff.bodies.drawing.solids import DARKEST, Solid, solid_of
+from standoff.bodies.drawing.solids import DARKEST
 from standoff.clearance.picture import (
     FAINT,
     HALO,
@@ -17,14 +17,17 @@ from standoff.clearance.picture import (
     ON_TOP,
     OTHERS,
     THROUGH,
+    Part,
     bodies_legend,
     colour_of,
     numbered_rows,
     pairs_legend,
+    parts_of,
 )
 from standoff.clearance.report import Report, Row
 from standoff.clearance.verdicts import Verdict
 from standoff.geometry.validation import Array
+from standoff.motion import Pose
 
 try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -40,8 +43,8 @@ EDGE = "0.25"
 """Colour of the parts' edges."""
 
 
-def assembly_figure(report: Report, unit: str) -> Figure:
-    """Draw the parts of a report on an assembly: those of its first pairs in colour.
+def assembly_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure:
+    """Draw the bodies of a world that has solids: those of its first pairs in colour.
 
     All triangles are sorted together from back to front, as parts may be around one another.
     """
@@ -53,36 +56,26 @@ def assembly_figure(report: Report, unit: str) -> Figure:
     towards = direction_to_viewer(USUAL_VIEW)
     axes.view_init(*USUAL_VIEW)
     axes.set_proj_type("ortho")
-    _draw_parts(axes, report, rows, coloured, towards)
-    cloud = _draw_pairs(axes, rows)
-    parts = _clouds(report)
-    frame(axes, seen_from(np.concatenate([*parts, *cloud]), towards), 0.0, towards, unit)
+    parts = parts_of(report.world, poses, coloured)
+    _draw_parts(axes, parts, rows, coloured, towards)
+    ends = _draw_pairs(axes, rows)
+    clouds = [np.asarray(part.pose.apply(part.solid.points)) for part in parts]
+    frame(axes, seen_from(np.concatenate([*clouds, *ends]), towards), 0.0, towards, unit)
     look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
     figure.legend(handles=bodies_legend(coloured), loc="lower left", ncols=2, **look)
     figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
     return figure
 
 
-def _clouds(report: Report) -> list[Array]:
-    world: Any = report.world
-    return [
-        np.asarray(world.fixed_poses[name].apply(solid_of(body).points))
-        for name, body in world.bodies.items()
-    ]
-
-
 def _draw_parts(
-    axes: Any, report: Report, rows: Sequence[Row], coloured: Sequence[str], towards: Array
+    axes: Any, parts: Sequence[Part], rows: Sequence[Row], coloured: Sequence[str], towards: Array
 ) -> None:
     met = (Verdict.OVERLAPPING, Verdict.CONTAINED)
     deep = {name for row in rows if row.verdict in met for name in row.names}
     corners, colours, lines = [], [], []
     right, up = across(towards)
     lamp = LIGHT @ np.array([right, towards, up])
-    world: Any = report.world
-    for name, body in world.bodies.items():
-        solid: Solid = solid_of(body)
-        pose = world.fixed_poses[name]
+    for name, solid, pose in parts:
         points = np.asarray(pose.apply(solid.points))
         upright = (solid.normals @ pose.rotation.T)[solid.triangles].mean(axis=1)
         seen = upright @ towards > 0.0

@@ -28,7 +28,8 @@ class Walked(NamedTuple):
     clearance : (n,) array
         Proven for all pairs, frame by frame [length].
     closest : list of str
-        The nearest pair of each frame, as "a - b"; empty where none is near.
+        The nearest pair of each frame, as "a - b"; empty where none is near. Where one body is
+        inside the other's material the pair is not among them.
     distance : (n,) array
         Its distance [length]; inf where none is near.
     near : dict of names to Nearest
@@ -85,21 +86,22 @@ class LeastOfAll:
         self._closest: list[NamePair | None] = []
         self._distance: list[float] = []
         self._counts: list[WorldCounts] = []
+        self._order: dict[NamePair, float] = {}
 
     def add(self, time: float, answer: WorldAnswer) -> None:
         """Take in a frame."""
         pairs = answer.pairs
         distances, lowest, certified = pairs.distance, pairs.lower_bound, pairs.certified
-        names = pairs.names
+        order, names = pairs.order, pairs.names
         for k, name in enumerate(names):
-            self._one(
-                name, time, (float(distances[k]), float(lowest[k])), not certified[k], answer, k
-            )
-        k = int(np.argmin(distances)) if len(names) else -1
+            self._one(name, time, (float(order[k]), float(lowest[k])), not certified[k], answer, k)
+        # a wall around a body is no distance of the course
+        distances = np.where(np.isneginf(order), np.inf, distances)
+        k = int(np.argmin(distances)) if np.isfinite(distances).any() else -1
         self._times.append(time)
         self._clearance.append(answer.clearance)
-        self._closest.append(names[k] if names else None)
-        self._distance.append(float(distances[k]) if names else np.inf)
+        self._closest.append(names[k] if k >= 0 else None)
+        self._distance.append(float(distances[k]) if k >= 0 else np.inf)
         self._counts.append(answer.counts)
 
     def _one(
@@ -111,12 +113,14 @@ class LeastOfAll:
         answer: WorldAnswer,
         k: int,
     ) -> None:
-        distance, lower = found
+        order, lower = found
         known = self.near.get(names)
         if known is None:
             self.near[names] = Nearest(answer.pairs[k], time, lower, int(uncertified))
-        elif uncertified or lower < known.lower_bound or distance < known.answer.distance:
-            nearer = distance < known.answer.distance
+            self._order[names] = order
+        elif uncertified or lower < known.lower_bound or order < self._order[names]:
+            nearer = order < self._order[names]
+            self._order[names] = min(order, self._order[names])
             self.near[names] = Nearest(
                 answer.pairs[k] if nearer else known.answer,
                 time if nearer else known.time,

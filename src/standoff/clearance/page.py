@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import io
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 from html import escape
@@ -12,13 +13,21 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.plain_data import without_roundoff
-from standoff.clearance.assembly import PartsAtRest
+from standoff.clearance.assembly import AssemblyFile, Source
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
-from standoff.clearance.report import Looked, Report, Row, Wanted, at_least, nearest_of, report_on
+from standoff.clearance.report import (
+    NO_CLEARANCE,
+    Looked,
+    Report,
+    Row,
+    Wanted,
+    at_least,
+    nearest_of,
+    report_on,
+)
 from standoff.motion import Pose
 from standoff.scene.reader import Array
-from standoff.scene.scene import Scene
 from standoff.tracking.proximity import shown_size
 from standoff.version import __version__
 from standoff.wording import counted, printable
@@ -47,12 +56,12 @@ img { max-width: 100%; height: auto; } footer { color: #666; margin-top: 2rem; f
 """
 
 
-def page_of(scene: Scene, report: Report, looked: Looked) -> str:
+def page_of(scene: Source, report: Report, looked: Looked) -> str:
     """Return the page.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene or AssemblyFile
     report : Report
     looked : Looked
         When the bodies were looked at. Over several frames the picture shows them at the instant
@@ -61,19 +70,20 @@ def page_of(scene: Scene, report: Report, looked: Looked) -> str:
     at, shown = _pictured(scene, report, looked)
     poses = _poses(scene, report, at)
     unit = scene.length_unit
-    world: Any = report.world
-    if isinstance(world, PartsAtRest):
+    if report.world.model.solids.any and report.world.dimension == 3:
         from standoff.clearance.assembly_picture import assembly_figure
 
-        first = ("The parts", "the worst pairs numbered", assembly_figure(shown, unit))
+        picture = assembly_figure(shown, poses, unit)
     else:
         picture = world_figure(shown, poses, unit)
-        first = (f"The bodies at {at:g} s", "the worst pairs numbered", picture)
+    heading = "The parts" if isinstance(scene, AssemblyFile) else f"The bodies at {at:g} s"
+    first = (heading, "the worst pairs numbered", picture)
     figures = [
         first,
         ("All pairs", "as a matrix", matrix_figure(report, scene.title, unit)),
     ]
     title = escape(printable(scene.title))
+    kind = "assembly" if isinstance(scene, AssemblyFile) else "scene"
     parts = [
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">{POLICY}',
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
@@ -83,16 +93,20 @@ def page_of(scene: Scene, report: Report, looked: Looked) -> str:
         _table(report, unit, timed=looked.frames > 1),
         _fits(report, unit),
         *(_picture(heading, told, figure) for heading, told, figure in figures),
-        f"<footer>Standoff {__version__}, scene {escape(printable(scene.file.name))}. The bounds "
-        "are proven; lengths are in the scene's unit.</footer></body></html>",
+        f"<footer>Standoff {__version__}, {kind} {escape(printable(scene.file.name))}. The bounds "
+        f"are proven; lengths are in {_unit_told(unit, kind)}.</footer></body></html>",
     ]
     return "\n".join(parts) + "\n"
 
 
-def _pictured(scene: Scene, report: Report, looked: Looked) -> tuple[float, Report]:
+def _unit_told(unit: str, kind: str) -> str:
+    return escape(unit) if unit else f"the {kind}'s unit"
+
+
+def _pictured(scene: Source, report: Report, looked: Looked) -> tuple[float, Report]:
     """The instant of the picture, and the report on it: over several frames that of the worst pair
     of which a body moves."""
-    if looked.frames == 1:
+    if looked.frames == 1 or isinstance(scene, AssemblyFile):
         return looked.start, report
     moving = {name for name, motion in scene.motions.items() if motion.kind != "fixed"}
     worst = [row for row in report.rows if moving & set(row.names)] or report.rows
@@ -103,15 +117,14 @@ def _pictured(scene: Scene, report: Report, looked: Looked) -> tuple[float, Repo
     return at, replace(now, rows=tuple(rows))
 
 
-def _poses(scene: Scene, report: Report, time: float) -> dict[str, Pose]:
+def _poses(scene: Source, report: Report, time: float) -> dict[str, Pose]:
     moving = scene.poses(report.world, time)
     return moving | report.world.fixed_poses
 
 
-def _summary(scene: Scene, report: Report, looked: Looked) -> str:
+def _summary(scene: Source, report: Report, looked: Looked) -> str:
     unit = escape(scene.length_unit)
-    world: Any = report.world
-    if isinstance(world, PartsAtRest):
+    if isinstance(scene, AssemblyFile):
         when = "at rest"
     elif looked.frames == 1:
         when = f"at {looked.start:g} s"
@@ -127,7 +140,9 @@ def _summary(scene: Scene, report: Report, looked: Looked) -> str:
     )
     lines = [
         f"{counted(len(report.world.bodies), 'body', 'bodies')}, {when}: {verdicts}.",
-        f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}.",
+        f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}."
+        if report.clearance > -math.inf
+        else f"Of the clearance of all pairs {NO_CLEARANCE}.",
     ]
     if report.failures:
         failing = counted(len(report.failures), "pair")

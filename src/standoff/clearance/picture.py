@@ -23,6 +23,7 @@ from standoff.motion import Pose
 from standoff.tracking import distance
 from standoff.wording import short_name
 from standoff.world import Compound, World
+from standoff.world.shapes import boundary_of
 
 try:
     from matplotlib.artist import Artist
@@ -92,7 +93,7 @@ def world_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure
     """
     rows = numbered_rows(report)
     coloured = list(dict.fromkeys(name for row in rows for name in row.names))
-    parts = _parts(report.world, poses, coloured)
+    parts = parts_of(report.world, poses, coloured)
     looks = _looks(parts, rows, coloured)
     # Not through pyplot, which would ask for a display and keep the figure alive.
     figure = Figure(figsize=(9.0, 7.6), dpi=130)
@@ -107,7 +108,9 @@ def world_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure
     return figure
 
 
-def _parts(world: World, poses: Mapping[str, Pose], coloured: Sequence[str]) -> list[Part]:
+def parts_of(world: World, poses: Mapping[str, Pose], coloured: Sequence[str]) -> list[Part]:
+    """Return the pieces of a world's bodies as they are drawn; of very many those of the coloured
+    bodies alone."""
     bodies = world.bodies
     count = sum(len(b) if isinstance(b, Compound) else 1 for b in bodies.values())
     names = list(bodies) if count <= MOST_PIECES else list(coloured)
@@ -118,7 +121,7 @@ def _parts(world: World, poses: Mapping[str, Pose], coloured: Sequence[str]) -> 
         pieces = body.pieces.values() if isinstance(body, Compound) else [(body, Pose.identity())]
         for shape, pose in pieces:
             if id(shape) not in solids:
-                solids[id(shape)] = solid_of(shape)
+                solids[id(shape)] = solid_of(boundary_of(shape))
             parts.append(Part(name, solids[id(shape)], poses[name] @ pose))
     return parts
 
@@ -265,6 +268,8 @@ def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
         told = f"{'depth' if gap < 0.0 else 'gap'} {abs(gap):.4g} {unit}".rstrip()
         if row.verdict is Verdict.TOUCHING:
             told = "touching"
+        if row.verdict is Verdict.CONTAINED:
+            told = f"inside, wall {gap:.4g} {unit}".rstrip()
         label = f"{number}  {a} - {b}: {told}"
         handles.append(Line2D([], [], color="black", marker="o", markersize=3.5, label=label))
     return handles

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from standoff.clearance.fits import Fit
 from standoff.clearance.tolerances import SHOWN_ABOVE
 from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
-from standoff.world import PairAnswer, World, WorldAnswer
+from standoff.world import PairAnswer, SolidPairAnswer, World, WorldAnswer
 
 MOST_BOUNDED = 20_000
 """Pairs beyond the horizon whose own bounds are asked one by one; of more, all are told the
@@ -22,7 +22,7 @@ class Nearest(NamedTuple):
 
     Attributes
     ----------
-    answer : PairAnswer
+    answer : PairAnswer or SolidPairAnswer
         At its least distance.
     time : float
         Of that frame, scene time, s.
@@ -32,7 +32,7 @@ class Nearest(NamedTuple):
         Frames whose answer is not proven.
     """
 
-    answer: PairAnswer
+    answer: PairAnswer | SolidPairAnswer
     time: float
     lower_bound: float
     uncertified: int
@@ -91,7 +91,7 @@ class Row:
     failure: str
 
     @property
-    def answer(self) -> PairAnswer:
+    def answer(self) -> PairAnswer | SolidPairAnswer:
         """At the pair's least distance."""
         return self.nearest.answer
 
@@ -264,6 +264,10 @@ def at_least(bound: float, digits: int = 6) -> str:
         step = 10.0 ** (math.floor(math.log10(abs(bound))) + 1 - digits)
         text = f"{float(text) - step:.{digits}g}"
     return text
+
+
+NO_CLEARANCE = "none is proven: solids overlap, or one is inside another's material"
+"""Said in place of a clearance without a bound."""
 
 
 def not_kept(required: float, lower: float) -> str:

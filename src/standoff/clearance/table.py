@@ -14,6 +14,7 @@ from standoff.scene.settings import TrackSettings
 from standoff.scene.worlds import by_piece
 from standoff.version import __version__
 from standoff.world import World, WorldAnswer
+from standoff.world.shapes import boundary_of
 
 FORMAT, FORMAT_VERSION = "standoff-world", 1
 
@@ -70,7 +71,10 @@ class NearPairs:
             "standoff": __version__,
             "title": scene.title,
             "units": {"length": scene.length_unit, "time": "s"},
-            "bodies": {name: body.digest for name, body in by_piece(self._world.bodies).items()},
+            "bodies": {
+                name: boundary_of(body).digest
+                for name, body in by_piece(self._world.bodies).items()
+            },
             "within": within if np.isfinite(within) else None,
             "settings": settings.facts(),
             "notes": scene.notes,

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from standoff.clearance.tolerances import TOUCHING_PART
-from standoff.kernels.body import layout as L
-from standoff.tracking.status import Ordered
-from standoff.world import PairAnswer
+from standoff.tracking.status import Ordered, Status
+from standoff.world import PairAnswer, SolidPairAnswer
+from standoff.world.shapes import is_bounded, slack_of
 
 
 class Verdict(Ordered):
@@ -37,23 +37,22 @@ _MEANING = {
 }
 
 
-def touching_tolerance(answer: PairAnswer) -> float:
+def touching_tolerance(answer: PairAnswer | SolidPairAnswer) -> float:
     """Return the gap or depth up to which two bodies count as touching [length].
 
     It is `TOUCHING_PART` of the larger body's size, and the slack of both: how far their surfaces
     may be from what they are taken for.
     """
-    bounded = [body for body in answer.bodies if body.bounded]
-    size = max((body.size for body in bounded), default=0.0)
-    slack = sum(float(body.reals[L.SLACK]) for body in answer.bodies)
+    size = max((body.size for body in answer.bodies if is_bounded(body)), default=0.0)
+    slack = sum(slack_of(body) for body in answer.bodies)
     return TOUCHING_PART * size + slack
 
 
-def verdict_of(answer: PairAnswer) -> Verdict:
+def verdict_of(answer: PairAnswer | SolidPairAnswer) -> Verdict:
     """Return the verdict on a pair."""
     if answer.far:
         return Verdict.APART
-    if getattr(answer, "inside", ""):
+    if answer.status is Status.CONTAINED:
         return Verdict.CONTAINED
     tolerance = touching_tolerance(answer)
     lower, upper = answer.lower_bound, answer.upper_bound

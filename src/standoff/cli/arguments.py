@@ -144,10 +144,10 @@ class CheckCommand:
     """A scene, a file of patches, a CAD file (STEP, BREP or IGES), or a shape written as in a
     scene, such as 'shape = "box", size = [1, 2, 3]'."""
     body: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
-    """Only this one of a scene's bodies."""
+    """Only this one of a scene's bodies or a CAD file's parts."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
-    """Draw the body with its features and normals to this file (.png, .svg or .pdf); with several
-    bodies, each gets its own, OUT-NAME.png."""
+    """Draw the body with its features and normals, or a CAD file's part with its edges by kind, to
+    this file (.png, .svg or .pdf); with several, each gets its own, OUT-NAME.png."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the report as JSON."""
 

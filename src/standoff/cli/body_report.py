@@ -6,7 +6,9 @@ from collections import Counter
 from math import degrees
 
 from standoff.bodies.body import Body
-from standoff.bodies.report import BodyReport, DihedralAngle
+from standoff.bodies.report import BodyReport, BoundaryReport, DihedralAngle
+from standoff.solids.spatial.solid import Solid
+from standoff.wording import counted
 
 METHODS = {
     "theorem": "by theorem",
@@ -16,6 +18,34 @@ METHODS = {
 """How the convexity of a patch was proven, in words."""
 
 Rows = list[tuple[str, str]]
+
+
+def solid_rows(solid: Solid, unit: str) -> Rows:
+    """Return (what, found) pairs of a solid that need not be convex; `unit` labels lengths."""
+    report = solid.check()
+    assert isinstance(report, BoundaryReport)
+    kinds = Counter(kind.value for kind in solid.boundary.edge_kinds)
+    edges = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    charts = "" if report.charts == report.faces else f", in {report.charts} charts"
+    cavities = len(report.cavities)
+    return [
+        ("dimension", "3, spatial"),
+        ("convex", "no: a Solid"),
+        ("faces", f"{report.faces}{charts}"),
+        ("edges", f"{report.edges}: {edges}" if edges else "0"),
+        ("vertices", str(report.vertices)),
+        ("size", f"{report.size:.9g} {unit}"),
+        ("volume", f"{report.volume:.9g} {unit}³, to {report.volume_error:.2g}"),
+        ("area", f"{report.area:.9g} {unit}²"),
+        ("shells", f"{len(report.shells)}, {counted(cavities, 'cavity', 'cavities')}"),
+        (
+            "sewing residual",
+            f"{report.sewing_residual:.3g} {unit}, accepted up to "
+            f"{report.sewing_tolerance:.3g} {unit}",
+        ),
+        ("slack", f"{report.slack:.3g} {unit}, taken off the certified lower bound"),
+        *(("note", note) for note in report.notes),
+    ]
 
 
 def report_rows(body: Body, unit: str) -> Rows:

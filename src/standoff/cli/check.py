@@ -12,22 +12,17 @@ from rich.table import Table
 from rich.text import Text
 
 from standoff import __version__
+from standoff.bodies.body import Body
 from standoff.cli.arguments import CheckCommand
-from standoff.cli.body_report import report_rows
+from standoff.cli.body_report import report_rows, solid_rows
 from standoff.cli.check_cad import is_cad_file, run_check_cad
-from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.errors import ExitCode, MissingExtra
 from standoff.cli.facts import json_text
-from standoff.cli.output import (
-    PLOT_ENDINGS,
-    Writer,
-    check_named,
-    check_target,
-    kind_of_picture,
-    write_whole,
-)
+from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
 from standoff.cli.subject import Subject, subjects
 from standoff.cli.terminal import tell
 from standoff.wording import printable
+from standoff.world.shapes import boundary_of
 
 WIDTH = 100
 """Characters of a table where stdout is not a terminal, such as a file."""
@@ -46,8 +41,7 @@ def run_check(command: CheckCommand) -> int:
     if is_cad_file(command.what):
         return run_check_cad(command)
     found = subjects(command.what, command.body)
-    targets = [_target(command.plot, subject, found) for subject in found]
-    files = _files(found, targets)
+    files = _files(found, command.plot)
     write_whole(files)
     if command.json:
         tell(_json(found, list(files)))
@@ -62,29 +56,12 @@ def run_check(command: CheckCommand) -> int:
     return ExitCode.DONE
 
 
-def _target(plot: Path | None, subject: Subject, found: list[Subject]) -> Path | None:
-    """The picture of one body: as the option names it, or with the body's name at its end."""
-    if plot is None or len(found) == 1:
-        return plot
-    check_named(plot, "--plot")
-    plain = "".join(
-        letter if letter.isalnum() or letter in "-_" else "_" for letter in subject.name
-    )
-    return plot.with_name(f"{plot.stem}-{plain}{plot.suffix}")
-
-
-def _files(found: list[Subject], targets: list[Path | None]) -> dict[Path, Writer]:
-    files: dict[Path, Writer] = {}
-    for subject, target in zip(found, targets, strict=True):
-        if target is None:
-            continue
-        check_target(target, "--plot", PLOT_ENDINGS)
-        if target in files:
-            raise CommandError(
-                f"--plot {target}: two bodies would be drawn to this file; pick one with --body"
-            )
-        files[target] = _writer(subject, kind_of_picture(target))
-    return files
+def _files(found: list[Subject], plot: Path | None) -> dict[Path, Writer]:
+    targets = picture_targets(plot, [subject.name for subject in found])
+    return {
+        target: _writer(subject, kind_of_picture(target))
+        for target, subject in zip(targets, found, strict=plot is not None)
+    }
 
 
 def _writer(subject: Subject, ending: str) -> Writer:
@@ -94,9 +71,8 @@ def _writer(subject: Subject, ending: str) -> Writer:
         raise MissingExtra(str(error.name)) from error
 
     def write(file: BinaryIO) -> None:
-        draw_body(subject.body, subject.body.check(), subject.name, subject.unit).savefig(
-            file, format=ending
-        )
+        body = boundary_of(subject.body)
+        draw_body(body, body.check(), subject.name, subject.unit).savefig(file, format=ending)
 
     return write
 
@@ -110,10 +86,11 @@ def _json(found: list[Subject], files: list[Path]) -> str:
 
 
 def _facts(subject: Subject) -> dict[str, Any]:
-    body = subject.body
+    body = boundary_of(subject.body)
     return {
         "body": subject.name,
         "shape": body.name,
+        "convex": isinstance(body, Body),
         "length_unit": subject.unit,
         "radius": body.radius,
         "digest": body.digest,
@@ -131,6 +108,11 @@ def _table(subject: Subject) -> Table:
         box=SIMPLE_HEAD,
         pad_edge=False,
     )
-    for what, found in report_rows(body, subject.unit):
+    rows = (
+        report_rows(body, subject.unit)
+        if isinstance(body, Body)
+        else solid_rows(body, subject.unit)
+    )
+    for what, found in rows:
         table.add_row(what, Text(printable(found)))  # as text: in markup "[unit]" is a style
     return table

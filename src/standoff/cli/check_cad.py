@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from standoff import __version__
+from standoff.cad.files import ENDINGS
 from standoff.cli.arguments import CheckCommand
-from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
+from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 
-ENDINGS = (".step", ".stp", ".p21", ".brep", ".rle", ".iges", ".igs")
+if TYPE_CHECKING:
+    from standoff.cad import Part
+
+MOST_NAMED = 8
+"""Parts that a message names."""
 
 
 def is_cad_file(what: str) -> bool:
@@ -27,18 +33,27 @@ def run_check_cad(command: CheckCommand) -> int:
     Raises
     ------
     CommandError
-        If the file can't be read, has no readable part, or an option does not belong to it.
+        If the file can't be read, has no readable part, or none of the name asked for.
+    WriteError
+        If a picture could not be written.
     """
-    if command.plot is not None or command.body is not None:
-        raise CommandError("--plot and --body: for a scene or a body, not for a CAD file")
     try:
         from standoff.cad import read_cad
 
         assembly = read_cad(Path(command.what), keep="readable")
     except (StandoffError, OSError, ModuleNotFoundError) as error:
         raise CommandError(str(error)) from error
+    chosen = _chosen(list(assembly), command.body)
+    files = _files(chosen, command.plot, assembly.unit)
+    write_whole(files)
     if not command.json:
-        tell(assembly.report())
+        if command.body is None:
+            tell(assembly.report())
+        else:
+            for part in chosen:
+                tell("\n".join(part.report.lines(assembly.unit)))
+        for target in files:
+            tell(f"wrote {target}")
         return ExitCode.DONE
     parts: list[dict[str, Any]] = [
         {
@@ -47,7 +62,7 @@ def run_check_cad(command: CheckCommand) -> int:
             "colour": part.colour,
             "report": asdict(part.report),
         }
-        for part in assembly
+        for part in chosen
     ]
     facts = {
         "standoff": __version__,
@@ -56,6 +71,41 @@ def run_check_cad(command: CheckCommand) -> int:
         "file_unit": assembly.file_unit,
         "parts": parts,
         "left_out": list(assembly.refusals),
+        "files": [str(target) for target in files],
     }
     tell(json_text(facts))
     return ExitCode.DONE
+
+
+def _chosen(parts: list[Part], name: str | None) -> list[Part]:
+    """The parts of a name, or all."""
+    found = [part for part in parts if name is None or part.name == name]
+    if not found:
+        known = ", ".join(part.name for part in parts[:MOST_NAMED])
+        dots = ", ..." if len(parts) > MOST_NAMED else ""
+        raise CommandError(f"--body {name}: no such part; there are {known}{dots}")
+    return found
+
+
+def _files(parts: list[Part], plot: Path | None, unit: str) -> dict[Path, Writer]:
+    """A picture for each solid, under the name of its first instance."""
+    if plot is None:
+        return {}
+    try:
+        from standoff.solids.drawing.spatial_picture import solid_figure
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name)) from error
+    shapes = {id(part.shape): part for part in reversed(parts)}
+    drawn = list(shapes.values())[::-1]
+
+    def writer(part: Part, ending: str) -> Writer:
+        def write(file: BinaryIO) -> None:
+            solid_figure(part.shape, part.name, unit).savefig(file, format=ending)
+
+        return write
+
+    targets = picture_targets(plot, [part.name for part in drawn])
+    return {
+        target: writer(part, kind_of_picture(target))
+        for target, part in zip(targets, drawn, strict=True)
+    }

@@ -6,29 +6,22 @@ import math
 from pathlib import Path
 from typing import Any
 
+from standoff.cad.files import ENDINGS
 from standoff.clearance.facts import report_facts
 from standoff.clearance.fits import load_fits
 from standoff.clearance.over_time import bounds_over, walk
 from standoff.clearance.report import Looked, Report, Wanted, bounds_of, nearest_of, report_on
 from standoff.cli.arguments import ClearanceCommand
+from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
-from standoff.cli.errors import CommandError, ExitCode, MissingExtra
+from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, world_facts
-from standoff.cli.output import (
-    PLOT_ENDINGS,
-    Writer,
-    check_target,
-    kind_of_picture,
-    write_whole,
-)
+from standoff.cli.output import write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, load_scene
 from standoff.scene.reader import Array
 from standoff.world import World
-
-CAD_ENDINGS = (".step", ".stp", ".brep", ".brp", ".iges", ".igs")
-"""Of files of assemblies; others are scenes."""
 
 
 def run_clearance(command: ClearanceCommand) -> int:
@@ -42,17 +35,17 @@ def run_clearance(command: ClearanceCommand) -> int:
         If the files could not be written after all.
     """
     _check(command)
-    if command.scene.suffix.lower() in CAD_ENDINGS:
+    if command.scene.suffix.lower() in ENDINGS:
         from standoff.cli.clearance_assembly import run_on_assembly
 
-        return run_on_assembly(command, _check_files)
+        return run_on_assembly(command)
     scene = load_scene(command.scene).as_world
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     times = scene.times() if command.motion else None
     world = scene.world_with(_horizon(command, scene), times=times)
-    _check_files(command)
+    check_files(command)
     report, looked = _looked(command, scene, world, wanted, times)
-    write_whole(_files(command, scene, report, looked))
+    write_whole(files_of(command, scene, report, looked))
     written = [path for path in (command.files.page, command.files.plot) if path is not None]
     if command.report.json:
         tell(json_text(_facts(scene, report, looked, written)))
@@ -104,38 +97,6 @@ def _looked(
         raise SceneError(str(error), key="world", file=scene.file) from error
     near = nearest_of(answer, time)
     return report_on(world, near, bounds_of(world, answer, near), wanted), Looked(time, time, 1)
-
-
-def _check_files(command: ClearanceCommand) -> None:
-    """Refuse files that could not be written, and import what draws them."""
-    if command.files.page is not None:
-        check_target(command.files.page, "--page", (".html",))
-    if command.files.plot is not None:
-        check_target(command.files.plot, "--plot", PLOT_ENDINGS)
-    if command.files.page is not None or command.files.plot is not None:
-        try:
-            import standoff.clearance.page  # noqa: F401
-        except ModuleNotFoundError as error:
-            raise MissingExtra(str(error.name)) from error
-
-
-def _files(
-    command: ClearanceCommand, scene: Scene, report: Report, looked: Looked
-) -> dict[Path, Writer]:
-    files: dict[Path, Writer] = {}
-    page, plot = command.files.page, command.files.plot
-    if page is not None:
-        from standoff.clearance.page import page_of
-
-        text = page_of(scene, report, looked)
-        files[page] = lambda file: file.write(text.encode())
-    if plot is not None:
-        from standoff.clearance.matrix import matrix_figure
-
-        figure = matrix_figure(report, scene.title, scene.length_unit)
-        ending = kind_of_picture(plot)
-        files[plot] = lambda file: figure.savefig(file, format=ending)
-    return files
 
 
 def _facts(scene: Scene, report: Report, looked: Looked, written: list[Path]) -> dict[str, Any]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -12,12 +12,11 @@ from rich.table import Table
 from rich.text import Text
 
 from standoff.bodies.plain_data import without_roundoff
-from standoff.clearance.assembly import PartsAtRest
-from standoff.clearance.report import Looked, Report, Row, at_least
+from standoff.clearance.assembly import AssemblyFile, Source
+from standoff.clearance.report import NO_CLEARANCE, Looked, Report, Row, at_least
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
 from standoff.cli.terminal import tell
-from standoff.scene import Scene
 from standoff.tracking.proximity import shown_size
 from standoff.wording import counted, printable
 
@@ -41,7 +40,7 @@ STYLES = {
 
 
 def print_report(
-    scene: Scene, report: Report, looked: Looked, written: Sequence[Path], *, verbose: bool = False
+    scene: Source, report: Report, looked: Looked, written: Sequence[Path], *, verbose: bool = False
 ) -> None:
     """Print a report: what was looked at, the table of near pairs, and what follows from it."""
     tell("\n".join(_head(scene, report, looked)))
@@ -54,18 +53,18 @@ def print_report(
     tell("\n".join(_tail(scene, report, looked, written, verbose=verbose)))
 
 
-def _head(scene: Scene, report: Report, looked: Looked) -> list[str]:
-    world: Any = report.world
+def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
+    world = report.world
     count = len(report.rows) + len(report.far)
     lines = [
         line(
-            "assembly" if isinstance(world, PartsAtRest) else "scene",
+            "assembly" if isinstance(scene, AssemblyFile) else "scene",
             f"{scene.title}: {counted(len(world.bodies), 'body', 'bodies')}, "
             f"{counted(count, 'pair')} count{'s' if count == 1 else ''}",
         ),
         *(line("", note) for note in scene.notes),
     ]
-    if isinstance(world, PartsAtRest):
+    if isinstance(scene, AssemblyFile):
         return lines
     if looked.frames == 1:
         return [*lines, line("time", time_text(looked.start))]
@@ -124,7 +123,7 @@ def _points(row: Row) -> str:
 
 
 def _tail(
-    scene: Scene, report: Report, looked: Looked, written: Sequence[Path], *, verbose: bool
+    scene: Source, report: Report, looked: Looked, written: Sequence[Path], *, verbose: bool
 ) -> list[str]:
     unit = scene.length_unit
     lines = []
@@ -139,7 +138,8 @@ def _tail(
         lines.append(line("far", f"{count}, proven to be {bound} or more apart"))
     told = ", ".join(f"{n} {verdict.name}" for verdict, n in report.tally().items() if n)
     lines.append(line("verdicts", told or "no pair counts"))
-    lines.append(line("clearance", f"{_clearance(report)} {unit}, proven for all pairs"))
+    told = f"{_clearance(report)} {unit}, proven for all pairs"
+    lines.append(line("clearance", told if report.clearance > -math.inf else NO_CLEARANCE))
     lines += _certified(report, looked)
     for k, (names, failure) in enumerate(report.failures):
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))

@@ -15,6 +15,7 @@ from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene, TrackSettings
 from standoff.scene.simulation import SimulationScene
+from standoff.solids.answer import SolidProximity
 from standoff.tracking import Proximity
 
 INDENT = 2
@@ -70,8 +71,19 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
     }
 
 
-def answer_facts(scene: Scene, time: float, answer: Proximity) -> dict[str, Any]:
+OF_SOLIDS = (
+    *("distance", "lower_bound", "upper_bound", "slack", "point_a", "point_b", "normal"),
+    *("feature_a", "feature_b", "parameters_a", "parameters_b", "minima", "continuum"),
+    *("overlap", "inside", "smoothness", "status", "certified", "counts"),
+)
+"""Attributes of an answer of solids that are printed, in their order."""
+
+
+def answer_facts(scene: Scene, time: float, answer: Proximity | SolidProximity) -> dict[str, Any]:
     """Return one answer."""
+    if isinstance(answer, SolidProximity):
+        facts = answer.as_dict()
+        return scene_facts(scene) | {"time": time} | {name: facts[name] for name in OF_SOLIDS}
     return scene_facts(scene) | {name: getattr(answer, name) for name in ANSWERED} | {"time": time}
 
 

@@ -105,6 +105,32 @@ def check_named(target: Path, option: str) -> None:
         )
 
 
+def picture_targets(plot: Path | None, names: Sequence[str]) -> list[Path]:
+    """The files of the pictures of some bodies: the one of ``--plot``, or with each body's name at
+    its end; none without the option.
+
+    Raises
+    ------
+    CommandError
+        If the option names no file of a known kind, or two bodies would be drawn to one.
+    """
+    if plot is None:
+        return []
+    if len(names) > 1:
+        check_named(plot, "--plot")
+    targets: list[Path] = []
+    for name in names:
+        plain = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in name)
+        target = plot if len(names) == 1 else plot.with_name(f"{plot.stem}-{plain}{plot.suffix}")
+        check_target(target, "--plot", PLOT_ENDINGS)
+        if target in targets:
+            raise CommandError(
+                f"--plot {target}: two bodies would be drawn to this file; pick one with --body"
+            )
+        targets.append(target)
+    return targets
+
+
 def make_folder(folder: Path, option: str) -> None:
     """Make the folder of several files where there is none.
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from standoff.bodies.body import Body
 from standoff.cli.errors import CommandError
 from standoff.scene import SceneError, load_scene
 from standoff.scene.file_content import DEFAULT_LENGTH_UNIT
@@ -19,10 +18,10 @@ EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"
 
 
 class Subject(NamedTuple):
-    """A body to report on, what it is called, and the label of its lengths."""
+    """A body or a solid to report on, what it is called, and the label of its lengths."""
 
     name: str
-    body: Body
+    body: Any
     unit: str
 
 

@@ -13,12 +13,14 @@ from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.scene import Scene
 from standoff.scene.reader import Array
+from standoff.solids.answer import SolidCounts, SolidProximity
 from standoff.tracking import Counts, Proximity, Status
 from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
 from standoff.tracking.laws import LAWS, PredictorCorrector
 from standoff.tracking.proximity import shown_size
 from standoff.wording import counted, printable
+from standoff.world.shapes import boundary_of
 
 FIRST_EVENTS = 8
 """How many switching events the summary lists: they fit on a screen with the rest. All of them are
@@ -30,6 +32,7 @@ ALWAYS_TOLD = ("predictor", "integrator", "gain")
 NOUNS = {
     "switches": ("switch", "switches"),
     "searches": ("search", "searches"),
+    "boxes": ("box", "boxes"),
     "regularised": ("regularised solve",),
 }
 """What is counted, singular and plural, where the count's name with or without its s does not say
@@ -48,10 +51,10 @@ def line(name: str, text: str) -> str:
 
 
 def answer_lines(
-    scene: Scene, time: float, answer: Proximity, *, verbose: bool = False
+    scene: Scene, time: float, answer: Proximity | SolidProximity, *, verbose: bool = False
 ) -> list[str]:
     """Return the lines for one answer."""
-    unit, size = scene.length_unit, shown_size(answer)
+    unit, size = scene.length_unit, shown_size(answer, scene.pair_shapes)
     numbers = [answer.distance, answer.lower_bound, answer.upper_bound]
     distance, lower, upper = without_roundoff(numbers, size).tolist()
     on_a, on_b = vector_text(answer.point_a, size), vector_text(answer.point_b, size)
@@ -68,10 +71,31 @@ def answer_lines(
         line(
             "normal", f"{vector_text(answer.normal, 1.0)} from {scene.pair[0]} to {scene.pair[1]}"
         ),
+        *(_solid_lines(scene, answer) if isinstance(answer, SolidProximity) else ()),
         line("certified", certified),
-        *([] if answer.certified else [line("", f"{answer.status.name}: {answer.status.advice}")]),
+        *(
+            []
+            if answer.certified or isinstance(answer, SolidProximity)
+            else [line("", f"{answer.status.name}: {answer.status.advice}")]
+        ),
         line("work", _work(answer.counts, verbose=verbose)),
     ]
+
+
+def _solid_lines(scene: Scene, answer: SolidProximity) -> list[str]:
+    """What only an answer of solids has: its status, and how many pairs are as near."""
+    lines = [line("status", f"{answer.status.name}: {answer.status.advice}")]
+    if answer.inside:
+        inner, outer = scene.pair if answer.inside == "A" else scene.pair[::-1]
+        lines.append(line("inside", f"{inner} is inside the material of {outer}"))
+    if answer.continuum is not None:
+        lines.append(line("continuum", f"a {answer.continuum.kind} of nearest pairs"))
+    elif len(answer.minima) > 1:
+        lines.append(line("ties", f"{len(answer.minima)} pairs at this distance"))
+    if answer.overlap is not None:
+        unit = scene.length_unit
+        lines.append(line("overlap", f"a ball of radius {answer.overlap.radius:.6g} {unit}"))
+    return lines
 
 
 def impact_lines(scene: Scene, found: Impact, *, verbose: bool = False) -> list[str]:
@@ -115,7 +139,7 @@ def recording_lines(
 
 
 def _scene_lines(scene: Scene) -> list[str]:
-    (a, b), (body_a, body_b) = scene.pair, scene.pair_bodies
+    (a, b), (body_a, body_b) = scene.pair, (boundary_of(x) for x in scene.pair_shapes)
     bodies = f"A = {a} ({body_a.name}), B = {b} ({body_b.name})"
     if len(scene.pairs) == 1:
         return [line("scene", f"{scene.title}: {bodies}")]
@@ -196,7 +220,7 @@ def _advice(statuses: dict[Status, int], frames: int) -> list[str]:
     ]
 
 
-def _work(counts: Counts, *, verbose: bool) -> str:
+def _work(counts: Counts | SolidCounts, *, verbose: bool) -> str:
     told = [
         counted(n, *NOUNS.get(name, (name.removesuffix("s").replace("_", " "),)))
         for name, n in counts._asdict().items()

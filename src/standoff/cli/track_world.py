@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from standoff.clearance.facts import report_facts
 from standoff.clearance.over_time import LeastOfAll, Walked, bounds_over, frames
-from standoff.clearance.report import Report, Wanted, at_least, report_on
+from standoff.clearance.report import NO_CLEARANCE, Report, Wanted, at_least, report_on
 from standoff.cli.arguments import TrackCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, world_facts
@@ -147,7 +149,9 @@ def _lines(
         line(
             "clearance",
             f"{at_least(float(walked.clearance[k]))} {unit} at "
-            f"{time_text(walked.times[k])}, proven for all pairs in all frames",
+            f"{time_text(walked.times[k])}, proven for all pairs in all frames"
+            if walked.clearance[k] > -np.inf
+            else f"{NO_CLEARANCE}, at {time_text(walked.times[k])}",
         ),
         *(line("closest" if i == 0 else "", text) for i, text in enumerate(shown)),
         *([line("", f"and {counted(more, 'more pair')}")] if more else []),

@@ -128,13 +128,27 @@ def segment(degree: int, first: float, last: float) -> Array:
 
 
 def segments(degree: int, first: Array, last: Array) -> Array:
-    """The same, (m, n, n), for m segments at once."""
+    """The same, (m, n, n), for m segments at once.
+
+    The blossom of each basis function is a sum over how many of its factors take `last`.
+    """
     n = degree + 1
-    matrices = np.empty((len(first), n, n))
+    starts, ends = _each_basis(degree, first), _each_basis(degree, last)
+    matrices = np.zeros((len(first), n, n))
     for i in range(n):
-        rows = np.broadcast_to(np.eye(n), (len(first), n, n))
-        for step in range(degree):
-            t = (last if step < i else first)[:, None, None]
-            rows = (1.0 - t) * rows[:, :-1] + t * rows[:, 1:]
-        matrices[:, i] = rows[:, 0]
+        for k in range(i + 1):
+            row = matrices[:, i, k : k + n - i]
+            row += ends[i][:, k, None] * starts[degree - i]
     return matrices
+
+
+def _each_basis(degree: int, t: Array) -> list[Array]:
+    """Values (m, d + 1) of the Bernstein polynomials of each degree d at t (m,) in [0, 1], by sums
+    of numbers that are not negative."""
+    values = [np.ones((len(t), 1))]
+    for d in range(1, degree + 1):
+        raised = np.zeros((len(t), d + 1))
+        raised[:, :-1] = (1.0 - t)[:, None] * values[-1]
+        raised[:, 1:] += t[:, None] * values[-1]
+        values.append(raised)
+    return values

@@ -14,7 +14,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.tolerances import PARALLEL_AXES, WHOLE_CONIC
 from standoff.geometry.validation import Array, affine_map, check_alike, vector3
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import curve_jet
+from standoff.kernels.entries.queries import curve_jet, curve_jets
 from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
@@ -51,6 +51,12 @@ class Curve(KeepsReadOnly):
 
     def point(self, t: float) -> Array:
         return self.jet(t)[0]
+
+    def points(self, ts: Array) -> Array:
+        """(n, 3) points at (n,) parameters, body frame."""
+        found = np.empty((len(ts), 9))
+        curve_jets(self.data, self.kind, 0, np.ascontiguousarray(ts), found)
+        return found[:, :3]
 
     @property
     def closed(self) -> bool:

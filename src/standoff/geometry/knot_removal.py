@@ -13,10 +13,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 
 from standoff.geometry.knots import KnotVector, insertion
 from standoff.geometry.tolerances import SAME_WEIGHTS, SPARE_KNOT
 from standoff.geometry.validation import Array
+
+# Up to so many control points a dense solution is faster than a banded one.
+FEW_POINTS = 24
+# Solutions of the normal equations: the first, and two that refine it.
+REFINEMENTS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,9 +114,9 @@ def _along_first(vector: KnotVector, h: Array, place: Place) -> tuple[KnotVector
     while waiting:
         # usually all together; if that moves the surface too far, as many as possible
         group = waiting.pop(0)
-        trial = _without(vector, [*left_out, *group], h)
-        if place.moved(h, _applied(_inserted_again(vector, trial[0]), trial[1])) <= place.limit:
-            left_out, found = [*left_out, *group], trial
+        less, points, moved = _without(vector, [*left_out, *group], h, place)
+        if moved <= place.limit:
+            left_out, found = [*left_out, *group], (less, points)
         elif len(group) > 1:
             middle = len(group) // 2
             waiting = [group[:middle], group[middle:], *waiting]
@@ -127,23 +133,24 @@ def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
         near = KnotVector(t[first - p - 1 : first + times + p + 1], p)
         part = h[first - p - 1 : first + times]
         for count in range(times, 0, -1):
-            less, points = _without(near, [knot] * count, part)
-            if place.moved(part, _applied(_inserted_again(near, less), points)) <= place.limit:
+            if _without(near, [knot] * count, part, place)[2] <= place.limit:
                 found += [knot] * count
                 break
     return found
 
 
-def _without(vector: KnotVector, left_out: Sequence[float], h: Array) -> tuple[KnotVector, Array]:
-    """The spline without some of its knots whose control points fit best."""
+def _without(
+    vector: KnotVector, left_out: Sequence[float], h: Array, place: Place
+) -> tuple[KnotVector, Array, float]:
+    """The spline without some of its knots whose control points fit best, and `Place.moved`."""
     knots = vector.knots.tolist()
     for knot in left_out:
         knots.remove(knot)
     less = KnotVector(np.array(knots), vector.degree)
-    matrix = _inserted_again(vector, less)
+    again = _inserted_again(vector, less)
     # each point scaled by its weight, so that points of small weight are as exact as others
     scale = 1.0 / h[..., 3].mean(axis=1)[:, None]
-    matrix, rows = matrix * scale, h.reshape(len(h), -1) * scale
+    matrix, rows = again * scale, h.reshape(len(h), -1) * scale
     points = np.empty((less.count, rows.shape[1]))
     # with clamped knots the end points stay the same, bit for bit
     kept = [k for k, i in ((0, 0), (-1, -1)) if matrix[i, k] == scale[i, 0]]
@@ -151,12 +158,34 @@ def _without(vector: KnotVector, left_out: Sequence[float], h: Array) -> tuple[K
     for k in kept:
         points[k] = h[k].ravel()
         rows = rows - matrix[:, k, None] * points[k]
-    points[inner] = np.linalg.lstsq(matrix[:, inner], rows, rcond=None)[0]
+    points[inner] = _fitted(matrix[:, inner], rows, vector.degree)
     points = points.reshape(less.count, *h.shape[1:])
     weights = points[..., 3]
     if float(np.ptp(h[..., 3])) <= SAME_WEIGHTS * float(h[..., 3].max()):
         weights[:] = h[0, 0, 3]
-    return less, points
+    return less, points, place.moved(h, np.tensordot(again, points, 1))
+
+
+def _fitted(matrix: Array, rows: Array, degree: int) -> Array:
+    """The least-squares solution of a matrix with a band of nonzero numbers.
+
+    Its normal equations have `degree` diagonals on each side; what they lose of the digits, two
+    steps of refinement give back.
+    """
+    if matrix.shape[1] <= FEW_POINTS:
+        return np.asarray(np.linalg.lstsq(matrix, rows, rcond=None)[0])
+    sparse = scipy.sparse.csr_array(matrix)
+    normal = (sparse.T @ sparse).todia()
+    band = np.zeros((degree + 1, matrix.shape[1]))
+    for row, offset in zip(normal.data, normal.offsets, strict=True):
+        if 0 <= offset <= degree:
+            band[degree - offset, : len(row)] = row
+    factor = scipy.linalg.cholesky_banded(band)
+    found = np.zeros((matrix.shape[1], rows.shape[1]))
+    for _ in range(REFINEMENTS):
+        rest = sparse.T @ (rows - sparse @ found)
+        found += scipy.linalg.cho_solve_banded((factor, False), rest)
+    return found
 
 
 def _inserted_again(vector: KnotVector, less: KnotVector) -> Array:
@@ -168,7 +197,3 @@ def _inserted_again(vector: KnotVector, less: KnotVector) -> Array:
         for _ in range(count - less.multiplicity(knot))
     ]
     return insertion(less, missing)[1]
-
-
-def _applied(matrix: Array, h: Array) -> Array:
-    return np.tensordot(matrix, h, 1)

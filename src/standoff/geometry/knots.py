@@ -8,6 +8,7 @@ are inserted by Boehm's rule (1980). `coefficients` have one row per basis funct
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
@@ -56,11 +57,15 @@ class KnotVector(KeepsReadOnly):
 
     def span_of(self, t: float) -> int:
         """s with knots[s] <= t < knots[s + 1], clamped to the domain."""
-        s = int(np.searchsorted(self.knots, t, side="right")) - 1
-        s = min(max(s, self.degree), self.count - 1)
-        while self.knots[s] == self.knots[s + 1]:
-            s -= 1
-        return s
+        return _span(self.knots, self.degree, t)
+
+
+def _span(knots: Sequence[float] | Array, degree: int, t: float) -> int:
+    s = bisect_right(knots, t) - 1
+    s = min(max(s, degree), len(knots) - degree - 2)
+    while knots[s] == knots[s + 1]:
+        s -= 1
+    return s
 
 
 def knot_vector(knots: Any, count: int, name: str, points: str) -> KnotVector:
@@ -174,21 +179,16 @@ def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVec
 
 def insertion(vector: KnotVector, new: Sequence[float]) -> tuple[KnotVector, Array]:
     """As `refine`, for knots that are known to be valid."""
-    refined, matrix = vector, np.eye(vector.count)
+    p, knots, rows = vector.degree, vector.knots.tolist(), list(np.eye(vector.count))
     for knot in new:
-        refined, matrix = _inserted(refined, knot, matrix)
-    return refined, matrix
-
-
-def _inserted(vector: KnotVector, knot: float, rows: Array) -> tuple[KnotVector, Array]:
-    """One knot inserted by Boehm's rule: every new coefficient lies between two old ones."""
-    p, t, s = vector.degree, vector.knots, vector.span_of(knot)
-    changed = slice(s - p + 1, s + 1)
-    a = np.clip((knot - t[changed]) / (t[s + 1 : s + 1 + p] - t[changed]), 0.0, 1.0)[:, None]
-    between = a * rows[changed] + (1.0 - a) * rows[s - p : s]
-    return KnotVector(np.insert(t, s + 1, knot), p), np.concatenate(
-        [rows[: s - p + 1], between, rows[s:]]
-    )
+        s = _span(knots, p, knot)
+        t = np.array(knots[s - p + 1 : s + p + 1])
+        # Boehm's rule: every new coefficient lies between two old ones
+        a = np.clip((knot - t[:p]) / (t[p:] - t[:p]), 0.0, 1.0)[:, None]
+        old = np.array(rows[s - p : s + 1])
+        rows[s - p + 1 : s] = a * old[1:] + (1.0 - a) * old[:-1]
+        knots.insert(s + 1, knot)
+    return KnotVector(np.array(knots), p), np.array(rows)
 
 
 def elevate_knots(vector: KnotVector, times: int) -> tuple[KnotVector, Array]:
@@ -211,8 +211,8 @@ def _clamped(vector: KnotVector) -> tuple[KnotVector, Array]:
     p, (first, last) = vector.degree, vector.domain
     matrix = np.eye(vector.count)
     for end in (first, last):
-        for _ in range(p - vector.multiplicity(end)):
-            vector, matrix = _inserted(vector, end, matrix)
+        vector, more = insertion(vector, [end] * (p - vector.multiplicity(end)))
+        matrix = more @ matrix
     # coefficient i is the blossom at knots i + 1 .. i + p: all first, or all last, at the ends
     low = int(np.searchsorted(vector.knots, first, side="right")) - p - 1
     high = int(np.searchsorted(vector.knots, last, side="left"))

@@ -48,6 +48,13 @@ class CutNets:
             self.widths.append(width)
             self.ends.append((np.clip(start, 0, 1), np.clip(stop + SPAN_ROUNDING, 0, 1)))
         self.h = blocks[self.spans[0], self.spans[1]]
+        self.parts: dict[tuple[int, int], Array] = {}
+
+    def _part(self, axis: int, degree: int) -> Array:
+        """(n, i, a) matrices to the coefficients of each part along an axis, made once."""
+        if (axis, degree) not in self.parts:
+            self.parts[axis, degree] = segments(degree, *self.ends[axis])
+        return self.parts[axis, degree]
 
     def net(self, along_u: int, along_v: int) -> Interval:
         """(4, n, i, j) coefficients of a partial derivative over each box, rounding included."""
@@ -63,8 +70,7 @@ class CutNets:
                 first, last = (np.delete(off, k, axis) for k in (0, -1))
                 off = degree * (first + last) + 2.0 * EPS * np.abs(h)
                 scale = scale / self.widths[axis - 1]
-        rows = segments(h.shape[1] - 1, *self.ends[0])
-        columns = segments(h.shape[2] - 1, *self.ends[1])
+        rows, columns = self._part(0, h.shape[1] - 1), self._part(1, h.shape[2] - 1)
         part, size, off = (
             _cut(c, rows, columns) * scale[:, None, None] for c in (h, np.abs(h), off)
         )

@@ -13,10 +13,10 @@ from standoff.errors import StandoffError
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.tolerances import INFLECTION, STRAIGHT_PCURVE
+from standoff.geometry.tolerances import BEND_ROUNDOFF, INFLECTION, STRAIGHT_PCURVE
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import pcurve_jet
+from standoff.kernels.entries.queries import pcurve_jet, pcurve_jets
 
 # A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
 MOST_TURN = 0.9 * np.pi
@@ -45,10 +45,17 @@ class BezierPcurve(Pcurve):
         shift = np.outer(self.matrix[:, 2], [angle, 0.0, 0.0])
         return BezierPcurve(self.matrix + shift, self.first, self.last)
 
+    def _block(self) -> Array:
+        return np.concatenate([[self.first, self.last], self.data])
+
     def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
-        block = np.concatenate([[self.first, self.last], self.data])
-        h, ht, htt = pcurve_jet(block, self.kind, 2, t)
+        h, ht, htt = pcurve_jet(self._block(), self.kind, 2, t)
         return np.array(h), np.array(ht), np.array(htt)
+
+    def homogeneous_at(self, ts: Array) -> Array:
+        found = np.empty((len(ts), 9))
+        pcurve_jets(self._block(), self.kind, 2, np.ascontiguousarray(ts), found)
+        return found.reshape(-1, 3, 3)
 
 
 class NurbsPcurve(Pcurve):
@@ -88,6 +95,14 @@ class NurbsPcurve(Pcurve):
     def homogeneous(self, t: float) -> tuple[Array, Array, Array]:
         return next((s for s in self.spans if t <= s.last), self.spans[-1]).homogeneous(t)
 
+    def homogeneous_at(self, ts: Array) -> Array:
+        found = np.empty((len(ts), 3, 3))
+        ends = [s.last for s in self.spans[:-1]]
+        owners = np.searchsorted(ends, ts, side="left")
+        for k in np.unique(owners):
+            found[owners == k] = self.spans[k].homogeneous_at(ts[owners == k])
+        return found
+
     def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
         found: list[tuple[Pcurve, float, float]] = []
         for span in self.spans:
@@ -126,7 +141,9 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
         return float(np.linalg.det(np.array(piece.homogeneous(t))))
 
     ts = np.linspace(first, last, 16 * len(piece.matrix))
-    bends = np.array([bend(t) for t in ts])
+    rows = piece.homogeneous_at(ts)
+    bends = np.linalg.det(rows)
+    bends[np.abs(bends) <= _bend_roundoff(piece, rows)] = 0.0
     bends[np.abs(bends) <= STRAIGHT_PCURVE * np.abs(bends).max(initial=0.0)] = 0.0
     cuts = [
         float(scipy.optimize.brentq(bend, ts[k], ts[k + 1], xtol=INFLECTION))
@@ -137,16 +154,22 @@ def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
     return [q for p in parts for q in _halved(p)]
 
 
+def _bend_roundoff(piece: BezierPcurve, rows: Array) -> Array:
+    """(n,) roundoff of the determinants of homogeneous jets (n, 3, 3): that of the derivatives is a
+    share of what control points of this size may have, however straight the curve is."""
+    degree, width = len(piece.matrix) - 1, piece.last - piece.first
+    first = degree / width * float(np.abs(piece.matrix).max())
+    second = degree / width * first
+    h, ht, htt = np.linalg.norm(rows, axis=2).T
+    return np.asarray(BEND_ROUNDOFF * h * (ht * second + first * htt))
+
+
 def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
     first, last = piece.first, piece.last
-    total, before = 0.0, None
-    for t in np.linspace(first, last, TURN_POINTS):
-        h, ht, _ = piece.homogeneous(float(t))
-        way = (ht[:2] - ht[2] * h[:2] / h[2]) / h[2]
-        angle = float(np.arctan2(way[1], way[0]))
-        if before is not None:
-            total += abs((angle - before + np.pi) % (2.0 * np.pi) - np.pi)
-        before = angle
+    h, ht, _ = np.moveaxis(piece.homogeneous_at(np.linspace(first, last, TURN_POINTS)), 1, 0)
+    ways = (ht[:, :2] - ht[:, 2:] * h[:, :2] / h[:, 2:]) / h[:, 2:]
+    turns = np.diff(np.arctan2(ways[:, 1], ways[:, 0]))
+    total = float(np.abs((turns + np.pi) % (2.0 * np.pi) - np.pi).sum())
     if total < MOST_TURN:
         return [piece]
     middle = 0.5 * (first + last)

@@ -11,7 +11,7 @@ from standoff.checks.real_numbers import real_array, shown
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import pcurve_jet
+from standoff.kernels.entries.queries import pcurve_jet, pcurve_jets
 from standoff.read_only import KeepsReadOnly
 
 
@@ -74,6 +74,17 @@ class Pcurve(KeepsReadOnly):
         if h[2] <= 0.0:
             return np.nan, np.nan, float(h[2])
         return float(h[0] / h[2]), float(h[1] / h[2]), float(h[2])
+
+    def homogeneous_at(self, ts: Array) -> Array:
+        """(n, 3, 3): `homogeneous` at (n,) parameters."""
+        found = np.empty((len(ts), 9))
+        pcurve_jets(self.data, self.kind, 0, np.ascontiguousarray(ts), found)
+        return found.reshape(-1, 3, 3)
+
+    def places(self, ts: Array) -> Array:
+        """(n, 2) parameters (u, v) at (n,) parameters; nan where the chart does not see them."""
+        h = self.homogeneous_at(ts)[:, 0]
+        return np.asarray(h[:, :2] / np.where(h[:, 2] > 0.0, h[:, 2], np.nan)[:, None])
 
     def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
         """(pcurve, first, last) of the parts that a straight line meets at most twice."""

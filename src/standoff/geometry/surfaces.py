@@ -25,7 +25,7 @@ from standoff.geometry.validation import (
     vector3,
 )
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import surface_jet
+from standoff.kernels.entries.queries import surface_jet, surface_jets
 from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
@@ -126,6 +126,12 @@ class Surface(KeepsReadOnly, ABC):
     def jet(self, u: float, v: float) -> tuple[Array, ...]:
         """(x, x_u, x_v, x_uu, x_uv, x_vv), each (3,), body frame."""
         return tuple(np.array(c) for c in surface_jet(self.reals, self.kind, 0, u, v))
+
+    def points(self, parameters: Array) -> Array:
+        """(n, 3) points at (n, 2) parameters, body frame."""
+        found = np.empty((len(parameters), 18))
+        surface_jets(self.reals, self.kind, 0, np.ascontiguousarray(parameters), found)
+        return found[:, :3]
 
     def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""

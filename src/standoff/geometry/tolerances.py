@@ -89,6 +89,10 @@ STRAIGHT_PCURVE: Final = 1e-11
 """Curvature below this fraction of the greatest (dimensionless) is the roundoff of a straight
 piece."""
 
+BEND_ROUNDOFF: Final = 64.0 * float(np.finfo(np.float64).eps)
+"""Derivatives of a trimming curve are rounded by this fraction of what control points of its size
+allow: sums of ten products, and the conversion from a spline's spans."""
+
 INFLECTION: Final = 1e-15
 """A pcurve is cut where its curvature changes sign, computed to this (parameter units): roundoff in
 [0, 1]."""
@@ -107,8 +111,8 @@ outward, for instance of a side that is a single point."""
 
 NET_ROUNDING: Final = 64.0 * float(np.finfo(np.float64).eps)
 """Control points of a part of a Bezier patch are rounded by this (relative to the greatest number
-of their net): twice nine levels of blossoms, two roundings each, and the sums of two matrix
-products."""
+of their net): in each of two directions nine levels of basis functions, two roundings each, their
+sums of at most ten products, and the sum of a matrix product."""
 
 SPAN_ROUNDING: Final = 4.0 * float(np.finfo(np.float64).eps)
 """Ends of a part of a span are moved outward by this (a fraction of the span): they are rounded

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.world.compound import Compound
+from standoff.world import Compound
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

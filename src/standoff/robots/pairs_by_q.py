@@ -15,7 +15,7 @@ from standoff.robots.tolerances import TIED, TIED_APART, TURN_LOST
 from standoff.tracking.derivatives import Smoothness, flagged_gradient
 from standoff.world import World
 from standoff.world.answer import WorldAnswer
-from standoff.world.pair_answer import PairAnswer
+from standoff.world.pair_answer import PairAnswer, convex
 
 Array = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class PairsByQ:
             each = [_by_q(twists, pair, one, second=second) for one in nearest(answer, names)]
             gradient, hessian = (agreed(np.array(parts)) for parts in zip(*each, strict=True))
             if self.undefined == "raise" and np.isnan(hessian if second else gradient).any():
-                reason = flagged_gradient(answer[names])[1] or TWO_PIECES
+                reason = flagged_gradient(convex(answer[names]))[1] or TWO_PIECES
                 raise StandoffError(f"The distance of {names} has no derivative: {reason}")
             found.append((gradient, hessian))
         return found
@@ -84,8 +84,8 @@ def _by_q(
 
 def nearest(answer: WorldAnswer, names: tuple[str, str]) -> list[PairAnswer]:
     """The nearest pair of pieces of two bodies, and all others that are as near."""
-    first = answer[names]
-    others = answer.minima(names, first.distance + TIED)
+    first = convex(answer[names])
+    others = map(convex, answer.minima(names, first.distance + TIED))
     return [first, *(one for one in others if one.pieces != first.pieces)]
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from standoff.bodies.body import Body
 from standoff.robots.obstacles import Obstacles
 from standoff.wording import counted
-from standoff.world.compound import Compound
+from standoff.world import Compound
 
 EXACT, HULL, GIVEN, SKIPPED, UNSEEN = "exact", "hull", "given", "skipped", "does not collide"
 """What may become of a geometry: its exact shape, the hull of its mesh, a body that the user gave,

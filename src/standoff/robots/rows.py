@@ -17,6 +17,7 @@ from standoff.shown_names import hides
 from standoff.tracking.derivatives import Smoothness, flagged_gradient
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
+from standoff.world.pair_answer import convex
 
 Array = NDArray[np.float64]
 
@@ -152,7 +153,7 @@ class RobotRows(KeepsReadOnly):
     def flag(self, k: int) -> Flag:
         """Whether row k is the derivative of its distance."""
         if k not in self._flags:
-            smoothness, reason, gradient = flagged_gradient(self._pairs[k])
+            smoothness, reason, gradient = flagged_gradient(convex(self._pairs[k]))
             smooth = smoothness in (Smoothness.SMOOTH, Smoothness.ONE_SIDED)
             if smoothness is Smoothness.PARTIAL:
                 # of a pair that is moved alike, its turns too are no change
@@ -182,7 +183,7 @@ class RobotRows(KeepsReadOnly):
 
     def __getitem__(self, k: int) -> RobotAnswer:
         k = range(len(self))[k]
-        pair, bodies = self._pairs[k], self.bodies[k].tolist()
+        pair, bodies = convex(self._pairs[k]), self.bodies[k].tolist()
         links = self.mounted.links[bodies[0]], self.mounted.links[bodies[1]]
         return RobotAnswer(pair, links, self.jacobian[k], self.clearance, (self, k))
 

@@ -17,7 +17,8 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.robots.geoms import Geoms
 from standoff.robots.hull_gap import hull_gap
 from standoff.robots.report import EXACT, GIVEN, HULL, SKIPPED, UNSEEN, GeomReport
-from standoff.world.compound import Compound
+from standoff.world import Compound
+from standoff.world.solid_pairs import refuse_solids
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -250,4 +251,6 @@ def _given_meshes(sources: Sequence[Source], meshes: Meshes) -> dict[str, Any]:
                 "meshes",
                 choice,
             )
+        if choice != HULL:
+            refuse_solids({name: choice}, "A robot", "give its convex pieces, as a Compound")
     return dict(meshes)

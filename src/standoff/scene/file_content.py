@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from standoff.bodies.body import Body
 from standoff.long_loops import told
 from standoff.motion import Pose
 from standoff.scene.compounds import read_solid
@@ -17,6 +17,7 @@ from standoff.scene.placements import read_pose
 from standoff.scene.reader import Table, Value, shown, unknown_name
 from standoff.wording import printable
 from standoff.world import Compound
+from standoff.world.shapes import Shape
 
 VERSION = 1
 """The version of the scene format that this library reads."""
@@ -43,10 +44,10 @@ class FileContent:
     title : str
         A line for the reader; the file's name where the scene has none.
     length_unit : str
-        Label of lengths; no number is converted.
+        Label of lengths; no number of the file is converted, lengths of CAD files are.
     top : Table
         What else is read is read from it.
-    bodies : mapping of str to Body or Compound
+    bodies : mapping of str to Body, Solid or Compound
     placements : mapping of str to Pose
         Of the bodies that have one.
     motions : mapping of str to Table
@@ -58,7 +59,7 @@ class FileContent:
     title: str
     length_unit: str
     top: Table
-    bodies: Mapping[str, Body | Compound]
+    bodies: Mapping[str, Shape | Compound]
     placements: Mapping[str, Pose]
     motions: Mapping[str, Table]
 
@@ -93,14 +94,15 @@ def read_content(
     _check_version(top)
     refuse_other_kind(top)
     top.expect(*KEYS, *keys)
-    bodies = named(top, "bodies", read_solid)
+    unit = top.text("length_unit", DEFAULT_LENGTH_UNIT)
+    bodies = named(top, "bodies", partial(read_solid, unit=unit))
     if not bodies:
         raise top.error("no bodies; add a table such as [bodies.tool]", "bodies")
     return FileContent(
         file=path,
         text=text,
         title=top.text("title", path.name),
-        length_unit=top.text("length_unit", DEFAULT_LENGTH_UNIT),
+        length_unit=unit,
         top=top,
         bodies=bodies,
         placements=named(top, "placements", read_pose, bodies),
@@ -123,7 +125,7 @@ def named(
     top: Table,
     key: str,
     read: Callable[[Table], Value],
-    bodies: Mapping[str, Body | Compound] | None = None,
+    bodies: Mapping[str, Shape | Compound] | None = None,
 ) -> dict[str, Value]:
     """Return what the tables ``[key.NAME]`` describe; with `bodies`, each NAME must be one."""
     if key not in top:

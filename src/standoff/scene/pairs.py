@@ -76,8 +76,8 @@ def _bodies(table: Table, bodies: Sequence[str], compounds: Collection[str]) -> 
     for key, name in (("a", a), ("b", b)):
         if name in compounds:
             raise table.error(
-                f"{shown(name)} has several pieces, and a pair is of two convex bodies; write "
-                "[world] in place of the pair",
+                f"{shown(name)} has several pieces, or is placed by its file, and a pair is of two "
+                "single bodies; write [world] in place of the pair",
                 key,
             )
     if a == b:

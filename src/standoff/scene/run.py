@@ -16,10 +16,11 @@ from standoff.scene.errors import SceneError
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
+from standoff.solids.answer import SolidProximity
 from standoff.tracking import Proximity, Tracker, distance
 
 
-def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
+def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity | SolidProximity]:
     """Return the pair's certified distance at one instant, without a tracker.
 
     Parameters
@@ -30,7 +31,7 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
 
     Returns
     -------
-    (float, Proximity)
+    (float, Proximity or SolidProximity)
         The instant and the answer.
 
     Raises
@@ -39,10 +40,11 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity]:
         If the instant is outside the scene's times, or the pair cannot be asked for a distance.
     """
     instant = scene.instant(time)
-    a, b = scene.pair_bodies
+    a, b = scene.pair_shapes
     try:
         pose_a, pose_b = (motion.path.pose(instant) for motion in scene.pair_motions)
-        return instant, distance(a, b, pose_a, pose_b)
+        found: Proximity | SolidProximity = distance(a, b, pose_a, pose_b)
+        return instant, found
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="pair", file=scene.file) from error
 

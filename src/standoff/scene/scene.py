@@ -17,10 +17,11 @@ from standoff.scene.file_content import PAIR_KEYS, SIMULATION_KEYS, FileContent,
 from standoff.scene.frames import check_instant, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
-from standoff.scene.reader import Array, Table, unknown_name
+from standoff.scene.reader import Array, Table, shown, unknown_name
 from standoff.scene.settings import DEFAULT_STEP, TrackSettings, read_settings
 from standoff.scene.worlds import WorldRules, made_world, read_world
 from standoff.world import Compound, World
+from standoff.world.shapes import Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +40,8 @@ class Scene:
     title : str
         A line for the reader; the file's name where the scene has none.
     length_unit : str
-        Label of lengths; no number is converted.
-    bodies : mapping of str to Body or Compound
+        Label of lengths; no number of the scene is converted, lengths of CAD files are.
+    bodies : mapping of str to Body, Solid or Compound
     motions : mapping of str to Motion
         One for each body; bodies at rest have the kind ``fixed``.
     pairs : tuple of Pair
@@ -57,7 +58,7 @@ class Scene:
     text: str
     title: str
     length_unit: str
-    bodies: Mapping[str, Body | Compound]
+    bodies: Mapping[str, Shape | Compound]
     motions: Mapping[str, Motion]
     pairs: tuple[Pair, ...]
     seen: Pair | None
@@ -130,11 +131,34 @@ class Scene:
 
     @property
     def pair_bodies(self) -> tuple[Body, Body]:
-        """Bodies A and B."""
-        a, b = (self.bodies[name] for name in self.pair)
-        # `read_pairs` lets no compound in.
+        """Bodies A and B, to be tracked.
+
+        Raises
+        ------
+        SceneError
+            If one of them is a solid that need not be convex.
+        """
+        a, b = self.pair_shapes
+        for name, body in zip(self.pair, (a, b), strict=True):
+            if not isinstance(body, Body):
+                raise SceneError(
+                    f"{shown(name)} is a solid that need not be convex, which nothing tracks yet: "
+                    "`standoff distance` asks one instant, and with [world] in place of the pair "
+                    "`standoff clearance --motion` and `standoff track` ask every frame by itself",
+                    key=f"bodies.{name}",
+                    file=self.file,
+                )
         assert isinstance(a, Body)
         assert isinstance(b, Body)
+        return a, b
+
+    @property
+    def pair_shapes(self) -> tuple[Shape, Shape]:
+        """Bodies or solids A and B."""
+        a, b = (self.bodies[name] for name in self.pair)
+        # `read_pairs` lets no compound in.
+        assert not isinstance(a, Compound)
+        assert not isinstance(b, Compound)
         return a, b
 
     @property

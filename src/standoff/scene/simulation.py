@@ -206,6 +206,12 @@ def _rigid_bodies(content: FileContent) -> list[RigidBody]:
                 "piece as a body, or use the scene with `standoff clearance`",
                 f"bodies.{name}",
             )
+        if not isinstance(body, Body):
+            raise content.top.error(
+                "is a solid that need not be convex, and the simulator moves convex bodies alone; "
+                "use the scene with `standoff clearance`",
+                f"bodies.{name}",
+            )
         placement = content.placements.get(name)
         if name in free and name in motions:
             raise free[name].error(

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from standoff.bodies.body import Body
 from standoff.scene.motions import Motion
 from standoff.scene.reader import Table, shown, unknown_name
 from standoff.tracking.law_options import Law
 from standoff.world import Compound, World
-from standoff.world.compound import dimension_of
+from standoff.world.pieces import dimension_of
 from standoff.world.rules import Given, Names, packed_rules
+from standoff.world.shapes import Shape
 
 NamePair = tuple[str, str]
 
@@ -58,9 +58,9 @@ class WorldRules:
         return Given(self.groups, self.ignore, self.only, self.parents, self.margins)
 
 
-def by_piece(bodies: Mapping[str, Body | Compound]) -> dict[str, Body]:
-    """Return convex bodies by name; those of a compound by its name, a dot, and the piece's."""
-    found: dict[str, Body] = {}
+def by_piece(bodies: Mapping[str, Shape | Compound]) -> dict[str, Shape]:
+    """Return bodies by name; those of a compound by its name, a dot, and the piece's."""
+    found: dict[str, Shape] = {}
     for name, body in bodies.items():
         if isinstance(body, Compound):
             found |= {f"{name}.{part}": piece.body for part, piece in body.pieces.items()}
@@ -70,7 +70,7 @@ def by_piece(bodies: Mapping[str, Body | Compound]) -> dict[str, Body]:
 
 
 def read_world(
-    top: Table, bodies: Mapping[str, Body | Compound], moving: Collection[str]
+    top: Table, bodies: Mapping[str, Shape | Compound], moving: Collection[str]
 ) -> WorldRules | None:
     """Return what a scene's ``[world]`` says, None where it has none.
 
@@ -78,7 +78,7 @@ def read_world(
     ----------
     top : Table
         The scene's top table.
-    bodies : mapping of str to Body or Compound
+    bodies : mapping of str to Body, Solid or Compound
     moving : collection of str
         Those with a motion.
 
@@ -112,7 +112,7 @@ def read_world(
 
 def made_world(
     rules: WorldRules,
-    bodies: Mapping[str, Body | Compound],
+    bodies: Mapping[str, Shape | Compound],
     motions: Mapping[str, Motion],
     law: Law,
     dt: float,

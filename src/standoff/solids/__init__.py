@@ -13,7 +13,6 @@ if TYPE_CHECKING:
         SolidCounts,
         SolidProximity,
     )
-    from standoff.solids.arrangement import Arrangement, ArrangementAnswer, PartsAnswer
     from standoff.solids.boundary_file import open_boundary, save_boundary
     from standoff.solids.planar.dxf import read_dxf
     from standoff.solids.planar.solid import PlanarSolid
@@ -32,7 +31,6 @@ else:
                 "SolidCounts",
                 "SolidProximity",
             ),
-            "standoff.solids.arrangement": ("Arrangement", "ArrangementAnswer", "PartsAnswer"),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
             "standoff.solids.planar.dxf": ("read_dxf",),
             "standoff.solids.planar.solid": ("PlanarSolid",),
@@ -43,13 +41,10 @@ else:
     )
 
 __all__ = [
-    "Arrangement",
-    "ArrangementAnswer",
     "Continuum",
     "NearestPair",
     "OpenPair",
     "Overlap",
-    "PartsAnswer",
     "PlanarSolid",
     "PointDistances",
     "Solid",

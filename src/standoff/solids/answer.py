@@ -34,6 +34,8 @@ class NearestPair(NamedTuple):
     feature_a, feature_b : Feature
     parameters_a, parameters_b : tuple of float
         As those of a `Proximity`.
+    pieces : (str, str)
+        Of compounds the pieces that the features are of, by name; empty for single bodies.
     """
 
     distance: float
@@ -45,6 +47,7 @@ class NearestPair(NamedTuple):
     feature_b: Feature
     parameters_a: tuple[float, ...]
     parameters_b: tuple[float, ...]
+    pieces: tuple[str, str] = ("", "")
 
 
 class Continuum(NamedTuple):
@@ -174,6 +177,9 @@ class SolidProximity(KeepsReadOnly, PlainData):
     counts : SolidCounts
     poses : pair of (12,) arrays
         World poses of A and B for which the answer holds: R row-major, p.
+    pieces : (str, str)
+        Of compounds the nearest pieces, by name, of which the features are; empty for single
+        bodies.
     """
 
     status: Status
@@ -197,6 +203,7 @@ class SolidProximity(KeepsReadOnly, PlainData):
     smoothness: Smoothness
     counts: SolidCounts
     poses: tuple[Array, Array]
+    pieces: tuple[str, str] = ("", "")
 
     @property
     def certified(self) -> bool:
@@ -235,28 +242,6 @@ class SolidProximity(KeepsReadOnly, PlainData):
                 "known of it, and `smoothness` says what that is."
             )
         return self.gradient_rows
-
-    def pictured(
-        self, a: Any, b: Any, view: tuple[float, float] | None = None, unit: str = ""
-    ) -> Any:
-        """The picture that ``so.plot`` makes.
-
-        Parameters
-        ----------
-        a, b : Solid, PlanarSolid, Boundary or Body
-            The solids of the answer, in its order.
-        view : (float, float), optional
-            Elevation and azimuth of the viewer, degrees.
-        unit : str, optional
-            Label of lengths.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-        """
-        from standoff.solids.drawing.pictures import picture_of_pair
-
-        return picture_of_pair(a, b, self, view, unit)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as plain data, under the attributes' names."""

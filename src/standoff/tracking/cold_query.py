@@ -17,7 +17,7 @@ T_co = TypeVar("T_co", covariant=True)
 
 @runtime_checkable
 class Queried(Protocol[T_co]):
-    """What is no `Body`, and answers a cold query with another by itself: a solid."""
+    """What is no `Body`, and answers a cold query with another by itself: a solid, a compound."""
 
     def cold_query(
         self, a: Any, b: Any, pose_a: PoseLike, pose_b: PoseLike, within: float | None
@@ -61,7 +61,7 @@ def distance(
 
     Parameters
     ----------
-    a, b : Body, Solid or PlanarSolid
+    a, b : Body, Solid, PlanarSolid or Compound
         Two spatial ones, or two planar ones.
     pose_a, pose_b : Pose or what ``Pose.of`` reads
         World poses of the bodies' frames.
@@ -71,14 +71,16 @@ def distance(
 
     Returns
     -------
-    Proximity, or SolidProximity where one of them need not be convex
+    Proximity, or SolidProximity where one of them is a solid or has one among its pieces
+        Of compounds that of the nearest pieces, which ``pieces`` names; of two with convex pieces
+        alone it is a `PairAnswer`, as in a world.
         In penetration ``distance`` is less than 0, the least depth, and ``status`` GLOBAL (or
         LOCAL, where it could not be proven to be the least).
 
     Raises
     ------
     TypeError
-        Neither a body nor a solid.
+        Neither a body nor a solid nor a compound.
     ValueError
         No pose; a horizon that is not positive; a planar body with a spatial one or out of its
         plane; two half-spaces.
@@ -87,9 +89,11 @@ def distance(
     try:
         table = cold_table(a, b, horizon)
     except TypeError:
-        solid = next((each for each in (a, b) if isinstance(each, Queried)), None)
-        if solid is not None:
-            return solid.cold_query(a, b, pose_a, pose_b, horizon)
+        asked = [each for each in (a, b) if isinstance(each, Queried)]
+        if asked:
+            # a compound asks its pieces, which know nothing of compounds
+            first = max(asked, key=lambda each: hasattr(each, "pieces"))
+            return first.cold_query(a, b, pose_a, pose_b, horizon)
         check_pair(a, b)  # what cannot be hashed is no body either
         raise
     return found_anywhere((a, b), table, (pose_a, pose_b, None, None))

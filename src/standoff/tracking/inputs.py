@@ -194,9 +194,14 @@ def same_body(a: Body, b: Body) -> bool:
 def check_body(body: object) -> None:
     """Raise TypeError if something given is not a body."""
     if not isinstance(body, Body):
-        raise StandoffTypeError(
-            f"{shown(body)} is not a Body: make one with so.shapes or Body.from_brep.", "body", body
+        # solids and compounds, which are above this layer, answer cold queries by themselves
+        asked = hasattr(body, "cold_query")
+        way = (
+            "this takes convex bodies alone; so.distance and so.World ask solids and compounds"
+            if asked
+            else "make one with so.shapes or Body.from_brep"
         )
+        raise StandoffTypeError(f"{shown(body)} is not a Body: {way}.", "body", body)
 
 
 def check_pair(a: Body, b: Body) -> None:

@@ -17,17 +17,19 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Pictured(Protocol):
-    """An answer that is no `Proximity`, and makes its picture by itself: that of two solids."""
+    """What is no `Body`, and makes the picture of itself with another: a solid."""
 
-    def pictured(self, a: Any, b: Any, view: tuple[float, float] | None, unit: str) -> Any:
-        """The picture of A and B, which it is the answer of, from a view or one of its own."""
+    def pictured(
+        self, a: Any, b: Any, answer: Any, view: tuple[float, float] | None, unit: str
+    ) -> Any:
+        """The picture of A and B, one of which this is, and of their answer."""
         ...
 
 
 def plot(
     a: Any,
     b: Any,
-    answer: Proximity | Pictured,
+    answer: Any,
     path: str | Path | None = None,
     *,
     view: tuple[float, float] | None = None,
@@ -72,8 +74,9 @@ def plot(
     OSError
         If the file cannot be written.
     """
-    if isinstance(answer, Pictured):
-        return _written(answer, (a, b), path, (view_angles(view), str(unit)))
+    solid = next((each for each in (a, b) if isinstance(each, Pictured)), None)
+    if solid is not None:
+        return _of_solids(solid, (a, b, answer), path, (view_angles(view), str(unit)))
     bodies: tuple[Any, Any] = (a, b)
     for name, body in zip("ab", bodies, strict=True):
         if not isinstance(body, Body):
@@ -101,11 +104,13 @@ def plot(
     return figure
 
 
-def _written(answer: Pictured, pair: tuple[Any, Any], path: Any, look: tuple[Any, str]) -> Figure:
+def _of_solids(
+    solid: Pictured, asked: tuple[Any, Any, Any], path: Any, look: tuple[Any, str]
+) -> Figure:
     from standoff.bodies.drawing.files import checked_file, write_picture
 
     target = None if path is None else checked_file(path)
-    figure: Figure = answer.pictured(*pair, *look)
+    figure: Figure = solid.pictured(*asked, *look)
     if target is not None:
         write_picture(figure, target)
     return figure

@@ -205,10 +205,10 @@ _PLAIN = (
 """Attributes that an answer's plain data has under their own names."""
 
 
-def shown_size(answer: Proximity) -> float:
+def shown_size(answer: Any, bodies: Any = None) -> float:
     """Length compared with which numbers of an answer are roundoff: of a body, or of a far
-    point."""
-    sizes = [body.size for body in answer.bodies if body.bounded]
+    point. `bodies` are those of an answer that does not have them."""
+    sizes = [body.size for body in bodies or answer.bodies if body.bounded]
     return float(np.nanmax([*sizes, *np.abs(answer.point_a), *np.abs(answer.point_b), 0.0]))
 
 

@@ -21,6 +21,7 @@ from standoff.scene.pairs import Pair
 from standoff.scene.settings import TrackSettings
 from standoff.view.moving_world import MovingWorld, moving_world, world_of_scene
 from standoff.world import World
+from standoff.world.solid_pairs import refuse_solids
 
 if TYPE_CHECKING:
     from standoff.view.served import ServedPage
@@ -99,6 +100,11 @@ def page_of(
         from standoff.view.page import Page
 
         return Page(what, host=host, port=port, others=others)
+    refuse_solids(
+        what.world.bodies,
+        "The live page",
+        "`standoff clearance --page` draws them, and `standoff track --plot` what they do",
+    )
     from standoff.view.world_page import WorldPage
 
     return WorldPage(what, host=host, port=port)

@@ -17,8 +17,10 @@ from standoff.view.readout import beside
 from standoff.view.shapes import Shape, shape_of
 from standoff.view.tolerances import SEEN_INTO
 from standoff.view.world_readout import closest_text
-from standoff.world import Compound, World, WorldAnswer
+from standoff.world import World, WorldAnswer
 from standoff.world.packed import pieces_of
+from standoff.world.pair_answer import convex
+from standoff.world.pieces import PieceUnion
 
 Array = NDArray[np.float64]
 
@@ -146,7 +148,7 @@ class WorldPicture(Aimable):
             nothing = np.full(3, np.nan)
             self._closest.show((nothing, nothing), nothing, "")
             return
-        text = f"{closest_text(closest)}: {beside(closest, self._unit, self.size)}"
+        text = f"{closest_text(convex(closest))}: {beside(closest, self._unit, self.size)}"
         deep = self._seen_into(
             closest.distance, answer.pairs.bodies[answer.pairs.distance.argmin()]
         )
@@ -185,7 +187,7 @@ class _Drawn:
         self,
         scene: Any,
         name: str,
-        body: Body | Compound,
+        body: Body | PieceUnion,
         colours: tuple[Colour, Colour],
         shapes: dict[int, Shape],
     ) -> None:

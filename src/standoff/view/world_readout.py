@@ -10,6 +10,7 @@ from standoff.clearance.report import at_least
 from standoff.view.readout import COLOURS, MARK, ROW, TABLE, length, verdict
 from standoff.wording import counted, printable, short_name
 from standoff.world import PairAnswer, WorldAnswer
+from standoff.world.pair_answer import convex
 
 
 def named(pair: PairAnswer) -> str:
@@ -45,9 +46,9 @@ def world_readout(answer: WorldAnswer, unit: str, size: float, pairs: int | None
             (MARK.format(COLOURS[0]) + "distance", "distance", "not known"),
         ]
     else:
-        said = f"{closest_text(closest)}: {verdict(closest, unit, size)}"
+        said = f"{closest_text(convex(closest))}: {verdict(closest, unit, size)}"
         rows = [
-            ("closest", "closest", named(closest)),
+            ("closest", "closest", named(convex(closest))),
             (MARK.format(COLOURS[0]) + "distance", "distance", length(closest.distance, unit)),
             ("lower bound", "bound", length(closest.lower_bound, unit)),
         ]

@@ -6,10 +6,11 @@ from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
     from standoff.world.answer import WorldAnswer
-    from standoff.world.compound import Compound, compound
+    from standoff.world.compounds import Compound, compound
     from standoff.world.impact import WorldImpact
     from standoff.world.pair_answer import PairAnswer
     from standoff.world.pair_arrays import PairArrays
+    from standoff.world.solid_answer import SolidPairAnswer
     from standoff.world.state import WorldState
     from standoff.world.world import World
 else:
@@ -17,10 +18,11 @@ else:
         __name__,
         {
             "standoff.world.answer": ("WorldAnswer",),
-            "standoff.world.compound": ("Compound", "compound"),
+            "standoff.world.compounds": ("Compound", "compound"),
             "standoff.world.impact": ("WorldImpact",),
             "standoff.world.pair_answer": ("PairAnswer",),
             "standoff.world.pair_arrays": ("PairArrays",),
+            "standoff.world.solid_answer": ("SolidPairAnswer",),
             "standoff.world.state": ("WorldState",),
             "standoff.world.world": ("World",),
         },
@@ -30,6 +32,7 @@ __all__ = [
     "Compound",
     "PairAnswer",
     "PairArrays",
+    "SolidPairAnswer",
     "World",
     "WorldAnswer",
     "WorldImpact",

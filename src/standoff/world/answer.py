@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,11 +19,15 @@ from standoff.world.pair_arrays import PairArrays
 from standoff.world.pair_rows import PairRows
 from standoff.world.state import WorldCounts, WorldState
 
+if TYPE_CHECKING:
+    from standoff.world.solid_answer import SolidPairAnswer
+
 
 class WorldAnswer(KeepsReadOnly):
     """What is known of all pairs of a world in one frame.
 
-    ``answer["hand", "shelf"]`` is the `PairAnswer` of two bodies, A the first named.
+    ``answer["hand", "shelf"]`` is the `PairAnswer` of two bodies, A the first named; where one of
+    them has a solid, the `SolidPairAnswer`.
 
     Attributes
     ----------
@@ -68,22 +72,23 @@ class WorldAnswer(KeepsReadOnly):
         return PairArrays(self._rows)
 
     @property
-    def closest(self) -> PairAnswer | None:
-        """The nearest pair, or the deepest; None if no pair is within its horizon."""
+    def closest(self) -> PairAnswer | SolidPairAnswer | None:
+        """The nearest pair, or the deepest, first of all one of which one body is inside the
+        other's material; None if no pair is within its horizon."""
         rows = self._rows.nearest
         if not len(rows):
             return None
-        return self._rows.answer(int(rows[int(np.argmin(self.pairs.distance))]))
+        return self._rows.answer(int(rows[int(np.argmin(self.pairs.order))]))
 
     @property
-    def below_margin(self) -> tuple[PairAnswer, ...]:
+    def below_margin(self) -> tuple[PairAnswer | SolidPairAnswer, ...]:
         """The pairs that are not proven to keep the margin that they were given."""
         rows = self._rows.nearest
         margins = self.model.search.rules.margins_of(self._rows.numbers)
         below = (margins > 0.0) & (self._rows.lower_bounds(rows) < margins)
         return tuple(self._rows.answer(int(row)) for row in rows[below])
 
-    def __getitem__(self, names: tuple[str, str]) -> PairAnswer:
+    def __getitem__(self, names: tuple[str, str]) -> PairAnswer | SolidPairAnswer:
         i, j = self._pair(names)
         number, groups = self.model.pair_number(i, j), self._rows.numbers
         at = int(np.searchsorted(groups, number))
@@ -91,7 +96,9 @@ class WorldAnswer(KeepsReadOnly):
             return self._rows.answer(int(self._rows.nearest[at]), turned=i > j)
         return self._far(i, j)
 
-    def minima(self, names: tuple[str, str], below: float = math.inf) -> tuple[PairAnswer, ...]:
+    def minima(
+        self, names: tuple[str, str], below: float = math.inf
+    ) -> tuple[PairAnswer | SolidPairAnswer, ...]:
         """All local minima of two bodies' distance that were kept, nearest first.
 
         Parameters
@@ -129,7 +136,7 @@ class WorldAnswer(KeepsReadOnly):
             )
         return i, j
 
-    def _far(self, i: int, j: int) -> PairAnswer:
+    def _far(self, i: int, j: int) -> PairAnswer | SolidPairAnswer:
         """The answer of a pair that is beyond its horizon."""
         search, state, square = self.model.search, self.state, self.model.most**2
         bound = kernels.apart_by_boxes(search.pieces[:], state.placed, i, j)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.world import arrays as W
+from standoff.progress import Progress
 from standoff.tracking.answers import proven
 from standoff.world.broad_phase import (
     Placed,
@@ -19,9 +20,10 @@ from standoff.world.broad_phase import (
 )
 from standoff.world.carried import carried_pieces, carried_rows, carried_table
 from standoff.world.model import Model
-from standoff.world.narrow_phase import Asked, Moment, Refused, ask
+from standoff.world.moment import Moment
+from standoff.world.narrow_phase import Asked, Refused, ask
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
-from standoff.world.state import Tree, WorldCounts, WorldState
+from standoff.world.state import NO_SOLIDS, SolidAnswers, Tree, WorldCounts, WorldState
 
 Array = NDArray[np.float64]
 Twists = tuple[Array, bool]
@@ -29,10 +31,12 @@ Twists = tuple[Array, bool]
 NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))
 
 
-def started_state(world: Model, given: GivenPoses, twists: Twists) -> WorldState:
+def started_state(
+    world: Model, given: GivenPoses, twists: Twists, progress: Progress | None = None
+) -> WorldState:
     """The state of a first frame."""
     before = empty_placed(len(world.search.pieces.owners)).placed
-    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1)
+    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1, progress)
     return _sought(world, given, before, (NO_PAIRS, ()), moment)
 
 
@@ -63,7 +67,7 @@ def _sought(
     tree = first_tree(search, frame)
     frame.sought[:] = 1
     table = table_of(search, frame, tree, known[0])
-    asked = _asked(world, frame, table, known[1], moment)
+    asked = _asked(world, given, (frame, table), (known[1], NO_SOLIDS), moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
@@ -91,7 +95,8 @@ def next_state(
         table = Table(table.ints.copy(), table.known.copy())
     time = before.time + dt
     moment = Moment(before.frame + 1, time, dt, *twists, may_rest, world.minima, workers)
-    asked = _asked(world, frame, table, before.pages, moment)
+    kept = before.pages, before.solids
+    asked = _asked(world, given, (frame, table), kept, moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
@@ -109,12 +114,20 @@ def _placed(
 
 
 def _asked(
-    world: Model, frame: Placed, table: Table, pages: tuple[Array, ...], moment: Moment
+    world: Model,
+    given: GivenPoses,
+    found: tuple[Placed, Table],
+    kept: tuple[tuple[Array, ...], SolidAnswers],
+    moment: Moment,
 ) -> Asked:
     """`ask`, with the names of the bodies in an error."""
-    pieces = world.search.pieces
+    pieces, (pages, before), solids = world.search.pieces, kept, None
+    if world.solids.any:
+        from standoff.world.solid_rows import SolidRows
+
+        solids = SolidRows(world, given.matrices, *found, before, moment)
     try:
-        return ask(world.laws, pieces, frame, table, pages, moment)
+        return ask(world.laws, pieces, *found, pages, moment, solids)
     except Refused as refused:
         p, q, why = refused.args
         names = tuple(world.listed[pieces.owners[k]][0] for k in (p, q))
@@ -166,6 +179,7 @@ def _state(
         known=known,
         near=near,
         pages=asked.pages,
+        solids=asked.solids,
         counts=counts,
         repaired=given.repaired,
     )

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose, PoseLike
 from standoff.tracking.inputs import matrix_and_mark
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import checked_law
-from standoff.world.compound import Compound, Piece, name_of
+from standoff.world.pieces import Piece, PieceUnion, name_of
 from standoff.world.poses import GivenPoses, mend_poses
+from standoff.world.shapes import Shape, as_shape
 
 Array = NDArray[np.float64]
-BodyLike = Body | Compound
+BodyLike: TypeAlias = "Shape | PieceUnion"
 
 
 def law_of_pairs(law: Any) -> Law:
@@ -96,22 +96,24 @@ def checked_bodies(bodies: Any) -> dict[str, BodyLike]:
             "bodies",
             bodies,
         )
+    found: dict[str, BodyLike] = {}
     for name, body in bodies.items():
-        if not isinstance(body, Body | Compound):
+        shape = body if isinstance(body, PieceUnion) else as_shape(body)
+        if shape is None:
             raise StandoffTypeError(
-                f"The body {name_of(name)!r} is {shown(body)}: give a Body or a Compound.",
+                f"The body {name_of(name)!r} is {shown(body)}: give a Body, a Solid or a Compound.",
                 "bodies",
                 body,
             )
-        name_of(name)
-    return dict(bodies)
+        found[name_of(name)] = shape
+    return found
 
 
 def named_pieces(bodies: Mapping[str, BodyLike]) -> dict[str, Piece]:
     """All pieces, by the names of bodies and pieces."""
     found: dict[str, Piece] = {}
     for name, body in bodies.items():
-        if isinstance(body, Compound):
+        if isinstance(body, PieceUnion):
             found |= {f"{name}.{part}": piece for part, piece in body.pieces.items()}
         else:
             found[name] = Piece(body, Pose.identity())

@@ -18,9 +18,10 @@ from standoff.motion.moving import MotionLike, moving
 from standoff.motion.paths import Fixed, Offset
 from standoff.motion.pose import Pose
 from standoff.tracking.inputs import matrix_and_mark
-from standoff.world.compound import Compound
 from standoff.world.model import Model
+from standoff.world.pieces import PieceUnion
 from standoff.world.poses import check_level, check_names
+from standoff.world.solid_pairs import refuse_solids
 from standoff.world.swept import Follower, meetings
 
 OPTIONS = frozenset(("clearance", "tolerance", "start", "max_evaluations"))
@@ -67,6 +68,11 @@ def first_impact(
     StandoffError
         A path that is missing, or as ``so.time_of_impact``, with the names of the body or the pair.
     """
+    refuse_solids(
+        dict(world.listed),
+        "time_of_impact",
+        "step the world along the paths (World.run), and look at `clearance`",
+    )
     given, (start, end) = _checked(world, paths, duration, options)
     parts = [
         part
@@ -143,9 +149,9 @@ class _Part(NamedTuple):
 
 
 def _parts(world: Model, name: str, path: Any, times: tuple[float, float]) -> list[_Part]:
-    body = world.listed[world.names.bodies[name]][1]
+    body: Any = world.listed[world.names.bodies[name]][1]
     with _named(f"paths[{name!r}]"):
-        if not isinstance(body, Compound):
+        if not isinstance(body, PieceUnion):
             return [_Part(name, "", Follower(body, path, *times))]
         return [
             _Part(name, part, Follower(piece.body, Offset(path, piece.pose), *times))

@@ -10,12 +10,13 @@ import numpy as np
 from standoff.motion import PoseLike
 from standoff.tracking.law_options import Law
 from standoff.world.broad_phase import Search
-from standoff.world.compound import check_in_plane, dimension_of
 from standoff.world.given import BodyLike, fixed_poses_of, named_pieces
 from standoff.world.model import Model
 from standoff.world.packed import packed_laws, packed_pieces, pieces_of
+from standoff.world.pieces import check_in_plane, dimension_of
 from standoff.world.poses import check_level
 from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
+from standoff.world.solid_pairs import solid_pairs
 
 
 def made_model(
@@ -42,6 +43,8 @@ def made_model(
         check_level(fixed, poses, "fixed")
         check_in_plane(parts)
     check_half_spaces(list(bodies), pieces, rules)
+    solids = solid_pairs(list(bodies), pieces, rules)
+    tracked = np.repeat(solids.tracked, [len(each) for each in pieces]).tolist()
     reach = max(within, rules.greatest_margin)
     return Model(
         key=uuid.uuid4().hex,
@@ -55,5 +58,6 @@ def made_model(
         planar=planar,
         minima=minima,
         search=Search(packed_pieces(pieces, planar), rules, within, reach),
-        laws=packed_laws([piece for each in pieces for piece in each], law, dt),
+        laws=packed_laws([piece for each in pieces for piece in each], law, dt, tracked),
+        solids=solids,
     )

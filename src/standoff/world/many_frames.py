@@ -17,7 +17,8 @@ from standoff.tracking.answers import proven
 from standoff.world.broad_phase import Placed, Table, empty_placed, place
 from standoff.world.frame import no_tree
 from standoff.world.model import Model
-from standoff.world.narrow_phase import Moment, answered
+from standoff.world.moment import Moment
+from standoff.world.narrow_phase import answered
 from standoff.world.packed import PackedLaws, PackedPieces
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses
 from standoff.world.state import IN_PAGE, PAGE

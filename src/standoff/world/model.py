@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.world.broad_phase import Search
-from standoff.world.compound import Compound
 from standoff.world.packed import PackedLaws
+from standoff.world.pieces import PieceUnion
 from standoff.world.rules import Names
+from standoff.world.shapes import Shape
+from standoff.world.solid_pairs import SolidPairs
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -24,7 +25,7 @@ class Model(NamedTuple):
     ----------
     key : str
         The mark of this world: its states have the same, and its copies.
-    listed : tuple of (str, Body or Compound)
+    listed : tuple of (str, Body, solid or Compound)
         All bodies with their names, in order.
     names : Names
     moving, fixed : tuple of str
@@ -36,10 +37,11 @@ class Model(NamedTuple):
         All minima below it are asked, length; -inf for the nearest alone.
     search : Search
     laws : PackedLaws
+    solids : SolidPairs
     """
 
     key: str
-    listed: tuple[tuple[str, Body | Compound], ...]
+    listed: tuple[tuple[str, Shape | PieceUnion], ...]
     names: Names
     moving: tuple[str, ...]
     fixed: tuple[str, ...]
@@ -50,6 +52,7 @@ class Model(NamedTuple):
     minima: float
     search: Search
     laws: PackedLaws
+    solids: SolidPairs
 
     @property
     def most(self) -> int:

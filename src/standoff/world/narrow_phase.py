@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,41 +13,16 @@ from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.tracking.threads import in_parts
 from standoff.world.broad_phase import Placed, Table
+from standoff.world.moment import Moment
 from standoff.world.packed import PackedLaws, PackedPieces
-from standoff.world.state import IN_PAGE, PAGE
+from standoff.world.state import IN_PAGE, NO_SOLIDS, PAGE, SolidAnswers
+
+if TYPE_CHECKING:
+    from standoff.world.solid_rows import SolidRows
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 NUMBER = np.dtype(np.float64).itemsize
-
-
-class Moment(NamedTuple):
-    """A frame's place in time, and what else its answers are made with.
-
-    Attributes
-    ----------
-    frame : int
-        Its number.
-    time, dt : float
-        Since the start, and since the frame before, s.
-    twists : (n, 9) array
-        Of each body: (v, omega) and its origin, world axes.
-    has_twist : bool
-    may_rest : bool
-        May answers of the frame before be kept where nothing has moved?
-    minima : float
-        All minima below it are asked, length.
-    workers : int
-    """
-
-    frame: int
-    time: float
-    dt: float
-    twists: Array
-    has_twist: bool
-    may_rest: bool
-    minima: float
-    workers: int
 
 
 class Refused(Exception):
@@ -63,10 +38,12 @@ class Asked(NamedTuple):
         FAR, RESTING, MOVED or NEW, of each pair in the table.
     pages : tuple of arrays
         All blocks that the table's rows stand in.
+    solids : SolidAnswers
     """
 
     fates: Ints
     pages: tuple[Array, ...]
+    solids: SolidAnswers
 
 
 def ask(
@@ -76,26 +53,36 @@ def ask(
     table: Table,
     pages: tuple[Array, ...],
     moment: Moment,
+    solids: SolidRows | None = None,
 ) -> Asked:
     """Bring a table of pairs, which is changed in place, up to a frame."""
     n = len(table.ints)
     fates = np.empty(n, dtype=np.int64)
     last = moment.frame - 1 if moment.may_rest else -1
     kernels.due(pieces[:], frame[:], table[:], moment.minima, last, fates)
+    if solids is not None:
+        solids.settle(fates)
     asking = np.flatnonzero(fates >= W.MOVED)
     again = np.empty(n, dtype=np.int64)
     several = int(pieces.first[-1]) > 1
     while True:
+        if solids is not None:
+            asking = solids.ask(asking, fates)
         pages = answered(laws, pieces, frame, table, pages, moment, asking, fates)
         if not several or not kernels.due_again(
             pieces[:], frame[:], table[:], moment.minima, fates, again
         ):
             break
         asking = np.flatnonzero(again)
+        if solids is not None and solids.all_asked(asking, fates):
+            break
+    found = NO_SOLIDS
+    if solids is not None:
+        found, pages = solids.answers(fates, pages)
     kept = fates != W.FAR
     table.ints[kept, W.I_FRAME] = moment.frame
     table.known[kept, W.C_TIME] = moment.time
-    return Asked(fates, _without_unused(table.ints, pages))
+    return Asked(fates, _without_unused(table.ints, pages), found)
 
 
 def answered(

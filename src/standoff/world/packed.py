@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.planes import outer_plane
-from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.motion import Pose
@@ -19,7 +18,8 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import kinds_of, main_kind
-from standoff.world.compound import Compound, Piece
+from standoff.world.pieces import Piece, PieceUnion
+from standoff.world.shapes import Shape, box_of, dimension_of_shape, is_bounded
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -45,9 +45,9 @@ class PackedPieces(NamedTuple):
     facts: Array
 
 
-def pieces_of(body: Body | Compound) -> tuple[Piece, ...]:
+def pieces_of(body: Shape | PieceUnion) -> tuple[Piece, ...]:
     """Those of a compound, or a body as the only one."""
-    if isinstance(body, Compound):
+    if isinstance(body, PieceUnion):
         return tuple(body.pieces.values())
     return (Piece(body, Pose.identity()),)
 
@@ -72,18 +72,17 @@ def packed_pieces(bodies: Sequence[Sequence[Piece]], planar: bool = False) -> Pa
     return packed
 
 
-def _facts(body: Body) -> Array:
+def _facts(shape: Shape) -> Array:
     """A piece's row without its placement."""
     row = np.zeros(W.N_FACT)
-    row[W.F_RADIUS] = body.reals[L.RADIUS] + body.reals[L.SLACK]
-    row[W.F_PLANAR] = 1.0 if body.dimension == 2 else 0.0
-    if not body.bounded:
+    centre, half, row[W.F_RADIUS] = box_of(shape)
+    row[W.F_PLANAR] = 1.0 if dimension_of_shape(shape) == 2 else 0.0
+    if not is_bounded(shape):
         row[W.F_PLANE] = 1.0
-        normal, offset = outer_plane(body)
+        normal, offset = outer_plane(shape)
         row[W.F_NORMAL : W.F_NORMAL + 3], row[W.F_OFFSET] = normal, offset
         return row
-    row[W.F_CENTRE : W.F_CENTRE + 3] = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
-    half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
+    row[W.F_CENTRE : W.F_CENTRE + 3] = centre
     row[W.F_HALF : W.F_HALF + 3] = half
     row[W.F_REACH] = np.linalg.norm(half) * (1.0 + 8.0 * np.finfo(float).eps)
     return row
@@ -118,14 +117,20 @@ class PackedLaws(NamedTuple):
     integrates: bool
 
 
-def packed_laws(pieces: Sequence[Piece], law: Law, dt: float) -> PackedLaws:
-    """Of all pieces, in their order."""
+UNREAD: tuple[list[int], int] = [0, 0, 0, 0], 0
+
+
+def packed_laws(
+    pieces: Sequence[Piece], law: Law, dt: float, tracked: Sequence[bool]
+) -> PackedLaws:
+    """Of all pieces, in their order; nothing of those that no frame reads, as none of their pairs
+    is tracked."""
     classes: dict[Any, int] = {}
     examples: list[Body] = []
     known: dict[int, tuple[list[int], int]] = {}
-    for piece in pieces:
+    for piece, read in zip(pieces, tracked, strict=True):
         body = piece.body
-        if id(body) in known:
+        if id(body) in known or not (read and isinstance(body, Body)):
             continue
         kind = main_kind(body), len(kinds_of(body)) > 1, body.bounded
         if kind not in classes:
@@ -133,8 +138,11 @@ def packed_laws(pieces: Sequence[Piece], law: Law, dt: float) -> PackedLaws:
             examples.append(body)
         lies = [body.ints.ctypes.data, len(body.ints), body.reals.ctypes.data, len(body.reals)]
         known[id(body)] = lies, classes[kind]
-    rows = [known[id(piece.body)] for piece in pieces]
-    options = np.array([[_options(a, b, law, dt) for b in examples] for a in examples])
+    rows = [known.get(id(piece.body), UNREAD) for piece in pieces]
+    options = np.zeros((max(len(examples), 1),) * 2 + (K.N_OPTIONS,))
+    for i, a in enumerate(examples):
+        for j, b in enumerate(examples):
+            options[i, j] = _options(a, b, law, dt)
     found = PackedLaws(
         np.array([lies for lies, _ in rows], dtype=np.int64),
         np.array([number for _, number in rows], dtype=np.int64),

@@ -94,6 +94,12 @@ class PairAnswer(Proximity):
         )
 
 
+def convex(answer: Any) -> PairAnswer:
+    """The answer of a pair where no world has solids, as what asks has refused them."""
+    assert isinstance(answer, PairAnswer)
+    return answer
+
+
 def of_bodies(of_pieces: Derivatives, arms: Array) -> Derivatives:
     """Derivatives by the motions of bodies, of those by the motions of their pieces.
 

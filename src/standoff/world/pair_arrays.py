@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,37 +12,46 @@ from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.answers import proven, statuses
+from standoff.tracking.status import Status
 from standoff.wording import counted
 from standoff.world.pair_answer import PairAnswer
 from standoff.world.pair_rows import PairRows
+
+if TYPE_CHECKING:
+    from standoff.world.solid_answer import SolidPairAnswer
 
 Array = NDArray[np.float64]
 
 GATHERED = np.array(
     [
-        *(K.DISTANCE, K.UPPER_BOUND, K.OUT_RATE),
+        *(K.DISTANCE, K.UPPER_BOUND, K.OUT_RATE, K.LOWER_BOUND),
         *(o + i for o in (K.POINT_A, K.POINT_B, K.NORMAL) for i in range(3)),
     ]
 )
 """The numbers of an answer that have an array here: read from the pages at once."""
-DISTANCE, UPPER_BOUND, RATE = range(3)
-POINT_A, POINT_B, NORMAL = slice(3, 6), slice(6, 9), slice(9, 12)
+DISTANCE, UPPER_BOUND, RATE, LOWER_BOUND = range(4)
+POINT_A, POINT_B, NORMAL = slice(4, 7), slice(7, 10), slice(10, 13)
 
 
 class PairArrays(KeepsReadOnly):
     """All pairs of bodies within their horizon, nearest or not, in arrays of n rows.
 
-    Sorted by the bodies' numbers; iterating yields a `PairAnswer` each.
+    Sorted by the bodies' numbers; iterating yields a `PairAnswer` or `SolidPairAnswer` each.
 
     Attributes
     ----------
     bodies : (n, 2) array of int
         Numbers of the two bodies, in the world's order.
     distance, lower_bound, upper_bound : (n,) arrays
+        Of a body that is inside the other's material those of the wall around it.
+    order : (n,) array
+        The distances by which the nearest is told: -inf where one body is inside the other's
+        material.
     point_a, point_b, normal : (n, 3) arrays
         As in `Proximity`, in world axes.
     rate : (n,) array
-        Time derivatives of the distances; nan where no twists were given.
+        Time derivatives of the distances; nan where no twists were given, and of a pair with a
+        solid where its distance is not smooth.
     """
 
     __slots__ = ("_all", "_numbers", "_rows")
@@ -75,8 +84,19 @@ class PairArrays(KeepsReadOnly):
         return self._column(DISTANCE)
 
     @property
+    def order(self) -> Array:
+        return np.where(self._inside, -np.inf, self.distance)
+
+    @property
+    def _inside(self) -> NDArray[np.bool_]:
+        status = self._all.state.ints[self._rows, W.I_STATUS]
+        return np.asarray(status == Status.CONTAINED.value)
+
+    @property
     def lower_bound(self) -> Array:
-        return self._all.lower_bounds(self._rows)
+        # what is known of a body inside another's material is of no signed distance
+        bounds = self._all.lower_bounds(self._rows)
+        return np.where(self._inside, self._column(LOWER_BOUND), bounds)
 
     @property
     def upper_bound(self) -> Array:
@@ -111,10 +131,10 @@ class PairArrays(KeepsReadOnly):
     def __len__(self) -> int:
         return len(self._rows)
 
-    def __getitem__(self, k: int) -> PairAnswer:
+    def __getitem__(self, k: int) -> PairAnswer | SolidPairAnswer:
         return self._all.answer(int(self._rows[k]))
 
-    def __iter__(self) -> Iterator[PairAnswer]:
+    def __iter__(self) -> Iterator[PairAnswer | SolidPairAnswer]:
         return (self[k] for k in range(len(self)))
 
     def __repr__(self) -> str:

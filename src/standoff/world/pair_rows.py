@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +11,15 @@ from numpy.typing import NDArray
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
-from standoff.world.compound import Compound
 from standoff.world.model import Model
 from standoff.world.packed import pieces_of
-from standoff.world.pair_answer import PairAnswer, far_block, swapped
+from standoff.world.pair_answer import PairAnswer, far_block, gradient_of_bodies, swapped
+from standoff.world.pieces import PieceUnion
 from standoff.world.state import WorldState
+
+if TYPE_CHECKING:
+    from standoff.solids.answer import SolidProximity
+    from standoff.world.solid_answer import SolidPairAnswer
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -71,11 +76,18 @@ class PairRows(KeepsReadOnly):
         numbers, least = self._least
         return np.asarray(least[np.searchsorted(numbers, self.groups(rows))])
 
-    def answer(self, row: int, turned: bool = False, alone: bool = False) -> PairAnswer:
+    def answer(
+        self, row: int, turned: bool = False, alone: bool = False
+    ) -> PairAnswer | SolidPairAnswer:
         """The answer in a row; `turned`: of (B, A). The lower bound is that of the bodies, or of
         the pair of pieces alone."""
         ints = self.state.ints[row]
         p, q = int(ints[W.I_A]), int(ints[W.I_B])
+        key = int(ints[W.I_KEY])
+        if key in self.state.solids.pieces:
+            group = key // self.model.most**2
+            found = self._alone(key, p, q) if alone else self.state.solids.bodies[group]
+            return self._solid(found, (p, q), turned)
         block = np.array(self.state.block(int(ints[W.I_ROW]))[: K.N_BLOCK])
         block[K.BLOCK_POLYTOPE] = 0.0  # that is the next frame's
         if not alone:
@@ -84,10 +96,54 @@ class PairRows(KeepsReadOnly):
             p, q, block = q, p, swapped(block)
         return self._made(p, q, block)
 
-    def far(self, i: int, j: int, bound: float) -> PairAnswer:
+    def far(self, i: int, j: int, bound: float) -> PairAnswer | SolidPairAnswer:
         """The answer of a pair of bodies of which only a bound is known."""
         first = self.model.search.pieces.first
+        if self.model.solids.bodies[[i, j]].any():
+            from standoff.world.solid_answer import beyond
+
+            pieces = int(first[i]), int(first[j])
+            return self._solid(beyond(bound, self._poses(i, j)), pieces, False)
         return self._made(int(first[i]), int(first[j]), far_block(bound))
+
+    def _solid(
+        self, found: SolidProximity, pieces: tuple[int, int], turned: bool
+    ) -> SolidPairAnswer:
+        """An answer of solids with the names of the bodies of two pieces."""
+        from standoff.world.solid_answer import named_answer
+
+        owners = self.model.search.pieces.owners
+        listed = [self.model.listed[owners[p]] for p in pieces]
+        bodies = []
+        for (_, body), piece in zip(listed, found.pieces, strict=True):
+            whole = not isinstance(body, PieceUnion)
+            bodies.append(body if whole else body.pieces[piece].body if piece else body)
+        names = [name for name, _ in listed]
+        if turned:
+            names, bodies = names[::-1], bodies[::-1]
+        one, other = names
+        return named_answer(found, (one, other), (*bodies,), self.state.time, turned)
+
+    def _alone(self, key: int, p: int, q: int) -> SolidProximity:
+        """The answer of two pieces, by the motions of their bodies."""
+        found = self.state.solids.pieces[key]
+        owners = self.model.search.pieces.owners
+        _, pieces, _, arms = zip(*(self._piece(each) for each in (p, q)), strict=True)
+        return replace(
+            found,
+            pieces=pieces,
+            minima=tuple(pair._replace(pieces=pieces) for pair in found.minima),
+            gradient_rows=gradient_of_bodies(found.gradient_rows, np.array(arms)),
+            poses=self._poses(int(owners[p]), int(owners[q])),
+        )
+
+    def _poses(self, i: int, j: int) -> tuple[Array, Array]:
+        """World poses (12,) of two bodies."""
+        a, b = (
+            np.concatenate([self.state.poses[k, :3, :3].ravel(), self.state.poses[k, :3, 3]])
+            for k in (i, j)
+        )
+        return a, b
 
     def _made(self, p: int, q: int, block: Array) -> PairAnswer:
         names, pieces, bodies, arms = zip(*(self._piece(each) for each in (p, q)), strict=True)
@@ -99,7 +155,7 @@ class PairRows(KeepsReadOnly):
         i = int(fixed.owners[p])
         name, body = self.model.listed[i]
         k = p - int(fixed.first[i])
-        piece = list(body.pieces)[k] if isinstance(body, Compound) else ""
+        piece = list(body.pieces)[k] if isinstance(body, PieceUnion) else ""
         arm = self.state.placed[p, W.P_SHIFT : W.P_SHIFT + 3] - self.state.poses[i, :3, 3]
         return name, piece, pieces_of(body)[k].body, arm
 

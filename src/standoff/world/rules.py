@@ -13,7 +13,8 @@ from standoff.checks.names import did_you_mean
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.world.compound import Piece, name_of
+from standoff.world.pieces import Piece, name_of
+from standoff.world.shapes import is_bounded
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -301,7 +302,7 @@ def check_half_spaces(
     ------
     StandoffError
     """
-    endless = [k for k, each in enumerate(pieces) if any(not p.body.bounded for p in each)]
+    endless = [k for k, each in enumerate(pieces) if any(not is_bounded(p.body) for p in each)]
     for i, j in itertools.combinations(endless, 2):
         if rules.counts(i, j):
             raise StandoffError(

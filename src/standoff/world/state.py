@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
+
+if TYPE_CHECKING:
+    from standoff.solids.answer import SolidProximity
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,7 +47,8 @@ class WorldCounts(NamedTuple):
     Attributes
     ----------
     open : int
-        Pairs of pieces whose tracker's state is kept.
+        Pairs of pieces whose tracker's state is kept; of bodies with a solid, pairs of bodies whose
+        answer is.
     tracked : int
         Pairs that went on from it in this frame.
     started : int
@@ -63,6 +70,24 @@ class WorldCounts(NamedTuple):
     bounded: int
     sought: int
     uncertified: int
+
+
+class SolidAnswers(NamedTuple):
+    """Of the near pairs with a solid.
+
+    Attributes
+    ----------
+    pieces : mapping of int to SolidProximity
+        Of pairs of pieces, by their keys in the table.
+    bodies : mapping of int to SolidProximity
+        Of pairs of bodies, by their numbers.
+    """
+
+    pieces: Mapping[int, SolidProximity]
+    bodies: Mapping[int, SolidProximity]
+
+
+NO_SOLIDS = SolidAnswers({}, {})
 
 
 class WorldState(KeepsReadOnly):
@@ -94,6 +119,7 @@ class WorldState(KeepsReadOnly):
         "placed",
         "poses",
         "repaired",
+        "solids",
         "time",
         "tree",
     )
@@ -120,6 +146,7 @@ class WorldState(KeepsReadOnly):
     pages: tuple[Array, ...]
     counts: WorldCounts
     repaired: int
+    solids: SolidAnswers
 
     @property
     def nbytes(self) -> int:
@@ -145,3 +172,20 @@ class WorldState(KeepsReadOnly):
 
     def __repr__(self) -> str:
         return f"<WorldState at {self.time:.6g} s: {self.counts.open} pairs open>"
+
+
+def check_key(state: Any, key: str) -> None:
+    """Refuse what is not a state of the world with a mark.
+
+    Raises
+    ------
+    TypeError, ValueError
+    """
+    if not isinstance(state, WorldState):
+        raise StandoffTypeError(
+            f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
+        )
+    if state.key != key:
+        raise StandoffError(
+            "The state belongs to another world: begin with world.start.", "state", state
+        )

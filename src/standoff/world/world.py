@@ -15,6 +15,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose, PoseLike
 from standoff.motion.moving import MotionLike
+from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.law_options import Law
@@ -34,7 +35,7 @@ from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
 from standoff.world.making import made_model
 from standoff.world.poses import GivenPoses, check_frames, read_poses_of, read_twists_of
 from standoff.world.rules import Given
-from standoff.world.state import WorldState
+from standoff.world.state import WorldState, check_key
 
 Array = NDArray[np.float64]
 PosesLike = Any
@@ -52,8 +53,8 @@ class World(KeepsReadOnly):
 
     Parameters
     ----------
-    bodies : mapping of str to Body or Compound
-        Spatial ones, or planar ones.
+    bodies : mapping of str to Body, Solid, PlanarSolid or Compound
+        Spatial ones, or planar ones. Pairs with a solid are asked anew in each frame.
     within : float, optional
         The horizon, length: of pairs that are farther apart only that is proven. Without one, the
         distances of all pairs are tracked.
@@ -80,7 +81,7 @@ class World(KeepsReadOnly):
 
     Attributes
     ----------
-    bodies : dict of str to Body or Compound
+    bodies : dict of str to Body, Solid, PlanarSolid or Compound
     moving, fixed : tuple of str
         Names, in the order of the bodies.
     within : float
@@ -92,7 +93,8 @@ class World(KeepsReadOnly):
     ValueError
         A name that nobody has, planar bodies among spatial ones or out of z = 0, a group of nobody,
         a body in a pair with itself, two half-spaces that would be a pair, a number that is
-        negative or NaN, a law with a horizon of its own.
+        negative or NaN, a law with a horizon of its own, a half-space or a rounded body in a pair
+        with a solid.
     """
 
     def __init__(  # noqa: PLR0913 - all but one are keywords with defaults
@@ -323,9 +325,12 @@ class World(KeepsReadOnly):
         self.check_state(state)
         return WorldAnswer(self.model, state)
 
-    def distances(self, poses: PosesLike) -> WorldAnswer:
-        """All near pairs at some poses by themselves, from nothing."""
-        return WorldAnswer(self.model, self.start(poses))
+    def distances(self, poses: PosesLike, progress: Progress | None = None) -> WorldAnswer:
+        """All near pairs at some poses by themselves, from nothing; `progress` is told how many
+        pairs with a solid are done, and of how many."""
+        given = self._read(poses)
+        state = started_state(self.model, given, self._twists(None, given), progress)
+        return WorldAnswer(self.model, state)
 
     def time_of_impact(
         self, paths: Mapping[str, MotionLike], duration: float, **options: Any
@@ -363,14 +368,7 @@ class World(KeepsReadOnly):
         ------
         TypeError, ValueError
         """
-        if not isinstance(state, WorldState):
-            raise StandoffTypeError(
-                f"{shown(state)} is not a WorldState: get one from world.start.", "state", state
-            )
-        if state.key != self.model.key:
-            raise StandoffError(
-                "The state belongs to another world: begin with world.start.", "state", state
-            )
+        check_key(state, self.model.key)
 
     def _frame_time(self, dt: float) -> float:
         """A frame's own time, s: positive, and short enough for the law to be stable."""

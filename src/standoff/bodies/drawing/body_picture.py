@@ -18,7 +18,7 @@ from standoff.bodies.drawing.body_view import (
     shows,
 )
 from standoff.bodies.packed_parts import PackedParts
-from standoff.bodies.report import BodyReport
+from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.bodies.tessellation import edge_lines, face_meshes
 from standoff.errors import not_installed
 
@@ -33,13 +33,15 @@ except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 
-def draw_body(body: PackedParts, report: BodyReport, name: str, unit: str) -> Figure:
+def draw_body(
+    body: PackedParts, report: BodyReport | BoundaryReport, name: str, unit: str
+) -> Figure:
     """Draw a body from two opposite sides, or in its plane.
 
     Parameters
     ----------
-    body : Body
-    report : BodyReport
+    body : Body or Boundary
+    report : BodyReport or BoundaryReport
         What its construction found.
     name : str
         The name by which it is known in the title.
@@ -69,12 +71,13 @@ def draw_body(body: PackedParts, report: BodyReport, name: str, unit: str) -> Fi
     return figure
 
 
-def _title(body: PackedParts, report: BodyReport, name: str) -> str:
+def _title(body: PackedParts, report: BodyReport | BoundaryReport, name: str) -> str:
     counts = [(report.faces, "face", "faces"), (report.edges, "edge", "edges")]
     counts += [(report.vertices, "vertex", "vertices")]
     told = [f"{n} {one if n == 1 else many}" for n, one, many in counts if n]
-    if report.smooth_edges:
-        told[1] += f" ({report.smooth_edges} smooth)"
+    smooth = report.smooth_edges if isinstance(report, BodyReport) else 0
+    if smooth:
+        told[1] += f" ({smooth} smooth)"
     known = name if name == body.name else f"{name}: {body.name}"
     part = "" if body.bounded else "; unbounded, only a part is shown"
     return f"{known}, {', '.join(told)}{part}"

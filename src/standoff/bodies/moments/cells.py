@@ -117,9 +117,9 @@ def evaluated(cell: Cell) -> Sums:
     t, s = (a + span * r[0] for a, span, r in zip(cell.low, spans, rules, strict=True))
     values = cell.function(t, s) * (spans[0] * spans[1])
     (_, along), (_, across) = rules
-    by_first = along @ np.einsum("j,ijk->ik", across[0], values)
-    by_second = across @ np.einsum("i,ijk->jk", along[0], values)
-    magnitude = np.einsum("i,j,ijk->k", along[0], across[0], np.abs(values))
+    by_first = along @ (across[0] @ values)
+    by_second = across @ (along[0] @ values.swapaxes(0, 1))
+    magnitude = along[0] @ (across[0] @ np.abs(values))
     return Sums(by_first[0], _remainder(by_first), _remainder(by_second), magnitude)
 
 

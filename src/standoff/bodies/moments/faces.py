@@ -23,7 +23,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import coedge_parameters, surface_jet
+from standoff.kernels.entries.queries import coedge_places, surface_jets
 
 # Points of a trimming curve between which it crosses a line of constant u or v at most once.
 SAMPLES = 65
@@ -45,8 +45,8 @@ class Chart:
         """The integrand of `flux` times du dv: (..., columns) for u and v of the same shape."""
         reals, row = self.body.reals, chart_row(self.body, self.number)
         kind, at = int(row[L.CHART_KIND]), int(row[L.CHART_REALS])
-        spots = zip(u.ravel().tolist(), v.ravel().tolist(), strict=True)
-        jets = np.array([surface_jet(reals, kind, at, a, b) for a, b in spots])
+        jets = np.empty((u.size, 18))
+        surface_jets(reals, kind, at, np.column_stack([u.ravel(), v.ravel()]), jets)
         x, xu, xv, xuu, xuv, xvv = np.moveaxis(jets.reshape(*u.shape, 6, 3), -2, 0)
         outward, radius = float(reals[at + L.OUTWARD]), self.frame.radius
         areas = outward * np.cross(xu, xv)
@@ -106,8 +106,9 @@ class TrimmingCurve:
 
     def parameters(self, t: Array) -> Array:
         """(4, n): u, v, u_t, v_t at parameters (n,)."""
-        found = [coedge_parameters(self.body.ints, self.body.reals, self.coedge, x) for x in t]
-        return np.array(found)[:, :4].T
+        found = np.empty((len(t), 4))
+        coedge_places(self.body.ints, self.body.reals, self.coedge, np.ascontiguousarray(t), found)
+        return found.T
 
     def samples(self) -> Array:
         return self.parameters(np.linspace(*self.ends, SAMPLES))
@@ -144,15 +145,14 @@ def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array])
     times = np.linspace(first, last, SAMPLES)
     cuts = [first, last]
     for axis, values in enumerate((u, v)):
-        for level in breaks[axis]:
-            away = values - level
-            for k in np.flatnonzero(away[:-1] * away[1:] < 0.0):
+        away = values[:, None] - breaks[axis]
+        for k, m in np.argwhere(away[:-1] * away[1:] < 0.0):
 
-                def miss(t: float, axis: int = axis, level: float = level) -> float:
-                    return float(curve.parameters(np.array([t]))[axis, 0] - level)
+            def miss(t: float, axis: int = axis, level: float = breaks[axis][m]) -> float:
+                return float(curve.parameters(np.array([t]))[axis, 0] - level)
 
-                cuts.append(float(scipy.optimize.brentq(miss, times[k], times[k + 1])))
-            cuts += [float(times[k]) for k in np.flatnonzero(np.abs(away[1:-1]) == 0.0) + 1]
+            cuts.append(float(scipy.optimize.brentq(miss, times[k], times[k + 1])))
+        cuts += times[1:-1][(away[1:-1] == 0.0).any(axis=1)].tolist()
     return [float(t) for t in np.unique(cuts)]
 
 

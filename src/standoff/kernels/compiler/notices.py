@@ -30,7 +30,7 @@ class Work(NamedTuple):
 
 
 WORK = {
-    "bodies": Work("the geometry of bodies", 10, 10, 13),
+    "bodies": Work("the geometry of bodies", 10, 10, 17),
     "query": Work("queries of bodies that are apart", 20, 25, 2),
     "contact": Work("queries in contact and penetration", 12, 35, 3),
     "frames": Work("single frames", 2, 3, 5),
@@ -43,8 +43,8 @@ WORK = {
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 7, 45, 3),
     "world": Work("worlds of many bodies", 5, 45, 10),
-    "solids": Work("solids in space", 15, 20, 3),
-    "planar": Work("planar solids", 15, 20, 5),
+    "solids": Work("solids in space", 15, 20, 5),
+    "planar": Work("planar solids", 15, 20, 4),
 }
 
 ALL_SECONDS = 125

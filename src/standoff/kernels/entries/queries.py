@@ -8,8 +8,18 @@ from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.algebra.vectors import unit
 from standoff.kernels.body import features, jets, trimming
 from standoff.kernels.body import inner_box as inner_boxes
-from standoff.kernels.compiler.decorators import entry, pointer
-from standoff.kernels.compiler.entry import INT, INTS, PAIR, READ, REAL, VECTOR, WRITE
+from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.entry import (
+    INT,
+    INTS,
+    PAIR,
+    READ,
+    READ_ROWS,
+    REAL,
+    ROWS,
+    VECTOR,
+    WRITE,
+)
 from standoff.kernels.entries.pointers import pair_pointers
 from standoff.kernels.frame.inputs import inputs_at
 from standoff.kernels.pair import switching
@@ -32,6 +42,38 @@ def curve_jet(reals, kind, o, t):
 @entry(WRITE, INT, INT, REAL, work="bodies")
 def pcurve_jet(reals, kind, o, t):
     return jets.pcurve_jet(pointer(reals, 0), kind, o, t)
+
+
+@entry(READ, INT, INT, READ_ROWS, ROWS, work="bodies")
+def surface_jets(reals, kind, o, parameters, out):
+    """The jets of a chart at rows (u, v), into rows of 18 numbers."""
+    at = pointer(reals, 0)
+    for i in range(len(parameters)):
+        jet = jets.surface_jet(at, kind, o, parameters[i, 0], parameters[i, 1])
+        write_vectors(out, i, jet)
+
+
+@entry(READ, INT, INT, READ, ROWS, work="bodies")
+def curve_jets(reals, kind, o, ts, out):
+    """The jets of a curve at parameters, into rows of 9 numbers."""
+    at = pointer(reals, 0)
+    for i in range(len(ts)):
+        write_vectors(out, i, jets.curve_jet(at, kind, o, ts[i]))
+
+
+@entry(READ, INT, INT, READ, ROWS, work="bodies")
+def pcurve_jets(reals, kind, o, ts, out):
+    """The homogeneous jets of a trimming curve at parameters, into rows of 9 numbers."""
+    at = pointer(reals, 0)
+    for i in range(len(ts)):
+        write_vectors(out, i, jets.pcurve_jet(at, kind, o, ts[i]))
+
+
+@kernel
+def write_vectors(out, row, vectors):
+    for k in range(len(vectors)):
+        for m in range(3):
+            out[row, 3 * k + m] = vectors[k][m]
 
 
 @entry(INTS, READ, INT, INT, REAL, REAL, work="bodies")
@@ -59,6 +101,16 @@ def planar_edge_normal(ints, reals, feature, t):
 @entry(INTS, READ, INT, REAL, work="bodies")
 def coedge_parameters(ints, reals, coedge, t):
     return features.coedge_parameters(pointer(ints, 0), pointer(reals, 0), coedge, t)
+
+
+@entry(INTS, READ, INT, READ, ROWS, work="bodies")
+def coedge_places(ints, reals, coedge, ts, out):
+    """(u, v, u_t, v_t) of a coedge at parameters, as rows."""
+    ints, reals = pointer(ints, 0), pointer(reals, 0)
+    for i in range(len(ts)):
+        found = features.coedge_parameters(ints, reals, coedge, ts[i])
+        for k in range(4):
+            out[i, k] = found[k]
 
 
 @entry(INTS, READ, INT, VECTOR, REAL, work="bodies")

@@ -275,9 +275,10 @@ def put_halves(a, b, best, work, count, low):
 
 
 @kernel
-def close_leaves(a, leaf_a, b, leaf_b, low, best, minima, work, counts):
-    """Close a pair of leaves, cutting it where it has to be; what stays open lowers best[OPEN].
-    `low`: a bound of it."""
+def close_leaves(a, b, pair, best, minima, work, counts):
+    """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
+    lowers best[OPEN]."""
+    leaf_a, leaf_b, low = pair
     put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
     count = 1
     while count > 0 and best[MET] == 0.0:

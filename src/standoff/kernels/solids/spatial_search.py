@@ -86,7 +86,7 @@ def search(a, b, best, minima, heap, room, counts):
             pa = S.Part(a, leaf_a, leaf_box(a, leaf_a))
             pb = S.Part(b, leaf_b, leaf_box(b, leaf_b))
             if not left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
-                close_leaves(a, leaf_a, b, leaf_b, low, best, minima, work, counts)
+                close_leaves(a, b, (leaf_a, leaf_b, low), best, minima, work, counts)
             low = best[OF_LEAVES]
         if best[ABOVE] > 0.0:
             bound_minima(best, minima, leaf_a, leaf_b, low)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from standoff.bodies.features import Feature
 from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.marks import draw_marks, marks_legend
+from standoff.solids.planar.loops import Loop
 from standoff.wording import short_name
 
 try:
@@ -27,8 +29,22 @@ except ModuleNotFoundError as error:
 
     raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
-if TYPE_CHECKING:
-    from standoff.solids.planar.solid import PlanarSolid
+
+class Flat(Protocol):
+    """What is drawn of a planar solid."""
+
+    @property
+    def loops(self) -> Sequence[Loop]: ...
+
+    @property
+    def kinds(self) -> Sequence[str]: ...
+
+    @property
+    def n_edges(self) -> int: ...
+
+    @property
+    def size(self) -> float: ...
+
 
 ALONG = 65
 """Points of a curve."""
@@ -49,7 +65,7 @@ VERTEX_LOOKS: dict[str, dict[str, Any]] = {
 """By kind."""
 
 
-def solid_figure(solid: PlanarSolid, name: str, unit: str) -> Figure:
+def solid_figure(solid: Flat, name: str, unit: str) -> Figure:
     """A planar solid with its vertices by kind."""
     figure = Figure(figsize=(7.5, 7.0), dpi=150)
     FigureCanvasAgg(figure)
@@ -71,7 +87,7 @@ def solid_figure(solid: PlanarSolid, name: str, unit: str) -> Figure:
 
 
 def pair_figure(
-    solids: tuple[PlanarSolid, PlanarSolid],
+    solids: tuple[Flat, Flat],
     names: tuple[str, str],
     answer: SolidProximity,
     unit: str,
@@ -103,7 +119,7 @@ def pair_figure(
 
 def _draw_solid(
     axes: Axes,
-    solid: PlanarSolid,
+    solid: Flat,
     pose: Array,
     colours: tuple[str, str],
     active: Feature | None,
@@ -125,7 +141,7 @@ def _draw_solid(
             edge += 1
         whole = np.concatenate(points)
         corners += [whole, whole[:1]]
-        codes += [Path.MOVETO, *[Path.LINETO] * (len(whole) - 1), Path.CLOSEPOLY]
+        codes += [int(Path.MOVETO), *[int(Path.LINETO)] * (len(whole) - 1), int(Path.CLOSEPOLY)]
     outline = np.concatenate(corners)
     # holes run the other way round, so they stay empty
     look: dict[str, Any] = {"facecolor": colours[0], "edgecolor": "none", "alpha": THROUGH}
@@ -136,7 +152,7 @@ def _draw_solid(
     return outline
 
 
-def _vertices(solid: PlanarSolid) -> Array:
+def _vertices(solid: Flat) -> Array:
     """(n, 2): vertex k is where edge k begins."""
     return np.array(
         [
@@ -147,7 +163,7 @@ def _vertices(solid: PlanarSolid) -> Array:
     )
 
 
-def _vertices_legend(*solids: PlanarSolid) -> list[Artist]:
+def _vertices_legend(*solids: Flat) -> list[Artist]:
     kinds = {kind for s in solids if s.n_edges <= MOST_MARKED for kind in s.kinds}
     return [
         Line2D([], [], linestyle="", label=f"{kind} vertex", **look)

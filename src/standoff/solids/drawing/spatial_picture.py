@@ -52,7 +52,8 @@ WORTH_IT = 0.05
 """By how much a view must be better than one nearer to the usual."""
 
 SHORT_AXIS = 0.45
-"""An axis of which the viewer sees less than this fraction is not named."""
+"""An axis of which the viewer sees less than this fraction, or nearer to another one, is not
+named."""
 
 LEGEND_ROW = 0.035
 """Height of a row of the legend, as a fraction of the figure."""
@@ -120,7 +121,7 @@ def _best_view(skins: Sequence[Skin], answer: SolidProximity) -> tuple[float, fl
     cloud = np.concatenate([skin.cloud for skin in skins])
     marks, best, chosen = _marked(answer), -np.inf, USUAL_VIEW
     for elevation in (USUAL_VIEW[0], -USUAL_VIEW[0], 2.0 * USUAL_VIEW[0]):
-        for azimuth in np.arange(0.0, 360.0, 30.0):
+        for azimuth in np.arange(0.0, 360.0, 45.0):
             view = elevation, float(USUAL_VIEW[1] + azimuth)
             camera = camera_on(cloud, view, LOOKED_AT)
             worth = 0.0
@@ -193,12 +194,16 @@ def finish(axes: Axes, camera: Camera, unit: str) -> None:
     axes.set_axis_off()
     wide = camera.wide
     arm, foot = 0.05 * wide, 0.05 * wide
-    spot = camera.low + [0.0, -foot]
+    spot = camera.low - np.array([0.0, foot])
     look: dict[str, Any] = {"fontsize": "small", "ha": "center", "va": "center"}
+    named: list[Array] = []
     for name, way in zip("xyz", camera.axes[:2].T, strict=True):
         axes.plot(*np.stack([spot, spot + arm * way]).T, color="black", linewidth=1.0)
-        if np.linalg.norm(way) > SHORT_AXIS:
-            axes.text(*(spot + 1.4 * arm * way), name, **look)
+        clear = all(np.linalg.norm(way - other) > SHORT_AXIS for other in named)
+        if clear and np.linalg.norm(way) > SHORT_AXIS:
+            named.append(way)
+            x, y = spot + 1.4 * arm * way
+            axes.text(x, y, name, **look)
     length = round_length(0.5 * wide)
     end = np.array([camera.high[0], camera.low[1] - foot])
     axes.plot([end[0] - length, end[0]], [end[1], end[1]], color="black", linewidth=2.0)

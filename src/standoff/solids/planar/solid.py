@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -30,6 +29,7 @@ from standoff.solids.planar.of_bodies import loops_of_body
 from standoff.solids.planar.outline import Outline, packed_outline
 from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
+from standoff.solids.plotted import Plotted, checked_answer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,7 +39,7 @@ VertexKind = Literal["convex", "reflex", "smooth"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PlanarSolid(KeepsReadOnly):
+class PlanarSolid(KeepsReadOnly, Plotted):
     """A planar solid in z = 0: what lies between loops of curves. Immutable.
 
     Make one with `from_loops`, `from_body` or ``so.solids.read_dxf``.
@@ -194,6 +194,11 @@ class PlanarSolid(KeepsReadOnly):
         return 2
 
     @property
+    def bounded(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def size(self) -> float:
         """Diagonal of the box around it, length."""
         return self.outline.size
@@ -229,34 +234,21 @@ class PlanarSolid(KeepsReadOnly):
         first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
         return planar_distance(first, second, pose_a, pose_b, Asked(within))
 
-    def plot(self, path: str | Path | None = None, *, unit: str = "") -> Figure:
-        """Draw the solid in its plane, its convex, reflex and smooth vertices told apart.
+    def _figure(self, unit: str) -> Figure:
+        from standoff.solids.drawing.planar_picture import solid_figure
 
-        Parameters
-        ----------
-        path : str or path, optional
-            Also write the picture there, whole or not at all: .png, .svg or .pdf.
-        unit : str
-            Label of lengths.
+        return solid_figure(self, self.name, unit)
 
-        Returns
-        -------
-        matplotlib.figure.Figure
+    def pictured(
+        self, a: Any, b: Any, answer: Any, view: tuple[float, float] | None, unit: str
+    ) -> Figure:
+        """The picture that ``so.plot`` makes of two solids, of which this is one; see `Plotted`."""
+        from standoff.solids.drawing.planar_picture import pair_figure
 
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty or has a different file extension.
-        OSError
-            If the file cannot be written.
-        """
-        from standoff.solids.drawing.pictures import picture_of
-
-        return picture_of(self, path, str(unit))
+        del view  # it is their plane
+        first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
+        names = first.name, second.name
+        return pair_figure((first, second), names, checked_answer(answer), unit)
 
     def signed_distance(
         self, points: Any, *, gradients: bool = False

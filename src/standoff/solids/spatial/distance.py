@@ -96,7 +96,9 @@ def spatial_distance(
         S.INSIDE if inside == "A" else S.OUTSIDE,
     )
     proof = PROOF_TOLERANCE * pair.size if tolerance is None else tolerance
-    proof = max(proof, 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.pb - pair.pa))))
+    proof = max(
+        proof, 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.pb - pair.pa)))
+    )
     # two tolerances more, so that what lies beyond is proven to
     horizon = np.inf if within is None else within + 2.0 * proof
     sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=LISTED)
@@ -217,7 +219,9 @@ def _meeting(
 def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
     """No ball was found inside both: all places of contact, and whether they can be parted."""
     # local minima below the tolerance, so that nothing is to be closed
-    found = _contacts(pair, pair.least(senses, sought._replace(above=0.5 * sought.tolerance)), senses)
+    found = _contacts(
+        pair, pair.least(senses, sought._replace(above=0.5 * sought.tolerance)), senses
+    )
     near = _places(pair, found, senses, 0.0)
     continuum = continuum_of(pair, near, found, senses)
     normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])

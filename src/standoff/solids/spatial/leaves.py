@@ -3,13 +3,14 @@ is proven of each."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.face_leaves import FaceChart, face_charts
+from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.patch_bounds import between
@@ -17,7 +18,6 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of, round_arc, turned_axis
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
 from standoff.solids.spatial.tolerances import (
@@ -29,12 +29,14 @@ from standoff.solids.spatial.tolerances import (
     SMOOTH_JOIN,
     SPOT_SPARE,
 )
-from standoff.solids.spatial.trims import Piece, edge_ranges, pieces_of
+from standoff.solids.spatial.trims import Piece, edge_ranges
 
 # Half angle of a leaf's cone of normals, radians.
 WIDEST = 0.5
-# Parts of the size: longest side of a leaf, and of one that a trimming curve cuts.
-LONGEST, LONGEST_CUT = 0.5, 0.12
+# Of that, what a part of a turn is made to take.
+NARROW = 0.95
+# Parts of the size: longest side of a leaf, of one that a trimming curve cuts, and of such a plane.
+LONGEST, LONGEST_CUT, LONGEST_PLANE = 0.5, 0.12, 0.25
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
 UNKNOWN = np.pi
@@ -75,7 +77,8 @@ def face_leaves(
         wide = np.stack([d[:, 0] * (waiting[:, 1] - waiting[:, 0]),
                          d[:, 1] * (waiting[:, 3] - waiting[:, 2])])  # fmt: skip
         cut = np.array([len(c) > 0 for c in cuts])
-        too_long = wide.max(axis=0) > np.where(cut, LONGEST_CUT, LONGEST) * size
+        shortest = LONGEST_PLANE if chart.surface.kind == L.PLANE else LONGEST_CUT
+        too_long = wide.max(axis=0) > np.where(cut, shortest, LONGEST) * size
         split = (bounds.angle > WIDEST) | too_long
         if depth == MOST_HALVINGS:
             split[:] = False
@@ -99,8 +102,16 @@ def _started(chart: FaceChart) -> Array:
         u1 = min(u1, u0 + 2.0 * np.pi)
     breaks = chart.surface.analytic_breaks()
     us = [u0, *sorted(u for u in np.asarray(breaks[0]).tolist() if u0 < u < u1), u1]
+    if chart.surface.periodic:  # u is an angle: narrow enough at once
+        us = [u for a, b in pairwise(us) for u in _angles(a, b)] + [u1]
     vs = [v0, *sorted(v for v in np.asarray(breaks[1]).tolist() if v0 < v < v1), v1]
     return np.array([[a, b, c, d] for a, b in pairwise(us) for c, d in pairwise(vs)])
+
+
+def _angles(first: float, last: float) -> list[float]:
+    """Where parts begin whose normals fit a cone of a leaf."""
+    count = int(np.ceil((last - first) / (2.0 * NARROW * WIDEST)))
+    return [first + (last - first) * k / count for k in range(count)]
 
 
 def _on_it(
@@ -199,15 +210,15 @@ def _leaf_reals(rect: Array, bounds: Array, cones: Array, natural: Array) -> Arr
     return reals
 
 
-def _parts_of_edge(boundary: PackedParts, number: int) -> list[tuple[float, float]]:
+def parts_of_edge(boundary: PackedParts, number: int) -> list[tuple[float, float]]:
     """The parts of an edge that are leaves; none of a smooth one, whose points are its faces'."""
-    flags = _edge_flags(boundary, number)
+    flags = edge_flags(boundary, number)
     if flags & L.SMOOTH and not flags & L.CREASED:
         return []
     return list(edge_ranges(boundary.edge_parts[number].curve, ARC, LONGEST * boundary.size))
 
 
-def _edge_flags(boundary: PackedParts, number: int) -> int:
+def edge_flags(boundary: PackedParts, number: int) -> int:
     row = int(boundary.ints[L.EDGES]) + L.EDGE_STRIDE * number
     return int(boundary.ints[row + L.EDGE_FLAGS])
 
@@ -218,12 +229,13 @@ def edge_leaves(
     ranges: list[tuple[float, float]],
     own: list[Cone],
     beside: tuple[int, Array],
+    proven: bool,
 ) -> list[Leaf]:
     """The leaves of one edge: its parts, with the cones of their normals, and the potential of a
-    round face beside it."""
-    flags = _edge_flags(boundary, number)
+    round face beside it. If its kind is not proven it may hold nearest points on either side."""
+    flags = edge_flags(boundary, number)
     senses = S.INSIDE if flags & L.REFLEX else S.OUTSIDE
-    if flags & (L.MIXED | L.CREASED):
+    if flags & (L.MIXED | L.CREASED) or not proven:
         senses = S.OUTSIDE | S.INSIDE
     curve = boundary.edge_parts[number].curve
     feature = boundary.n_faces + number
@@ -258,10 +270,13 @@ def edge_leaves(
 Cone = tuple[Array, float]
 
 
-def edge_cones(
-    charts: dict[int, FaceChart], pieces: list[Piece], ranges: dict[int, list[tuple[float, float]]]
-) -> dict[int, list[Cone]]:
-    """(axis, half angle) of a cone round both faces' outward normals along each part of each edge.
+def face_cones(
+    charts: dict[int, FaceChart],
+    pieces: list[Piece],
+    ranges: Mapping[int, Sequence[tuple[float, float]]],
+) -> dict[tuple[int, int], dict[int, list[Cone]]]:
+    """Of each part (edge, k) of each edge and each face beside it: cones that hold the face's
+    outward normals along the part, as (axis, half angle).
 
     Each chart is asked once for all parts of all its edges.
     """
@@ -271,16 +286,25 @@ def edge_cones(
             if first < piece.last and piece.first < last:
                 rows = piece.clipped(first, last)
                 asked.setdefault(piece.chart, []).append((piece.edge, k, rows))
-    around: dict[tuple[int, int], list[Cone]] = {}
+    around: dict[tuple[int, int], dict[int, list[Cone]]] = {}
     for number, parts in asked.items():
         chart = charts[number]
-        every = _normal_cones(chart, np.concatenate([rows for _, _, rows in parts]))
-        at = 0
-        for edge, k, rows in parts:
-            around.setdefault((edge, k), []).extend(every[at : at + len(rows)])
-            at += len(rows)
+        every = _normal_cones(chart, np.array([rows for _, _, rows in parts]))
+        for (edge, k, _), cone in zip(parts, every, strict=True):
+            around.setdefault((edge, k), {}).setdefault(chart.face, []).append(cone)
+    return around
+
+
+def edge_cones(
+    charts: dict[int, FaceChart], pieces: list[Piece], ranges: dict[int, list[tuple[float, float]]]
+) -> dict[int, list[Cone]]:
+    """(axis, half angle) of a cone round both faces' normals along each part of each edge."""
+    around = face_cones(charts, pieces, ranges)
     return {
-        edge: [_cone_round(around.get((edge, k), [])) for k in range(len(parts))]
+        edge: [
+            _cone_round([cone for own in around.get((edge, k), {}).values() for cone in own])
+            for k in range(len(parts))
+        ]
         for edge, parts in ranges.items()
     }
 
@@ -320,26 +344,3 @@ def vertex_leaf(boundary: PackedParts, number: int) -> Leaf:
     senses = S.OUTSIDE | S.INSIDE
     half = np.full(3, SPOT_SPARE * float(np.abs(x).max()))
     return Leaf(0, feature, -1, False, senses, [], -1, reals, x, np.eye(3), half)
-
-
-def all_leaves(boundary: PackedParts) -> tuple[list[Leaf], list[Piece]]:
-    """All leaves of a boundary, and the pieces of its trimming curves."""
-    charts = {c.number: c for c in face_charts(boundary)}
-    pieces = pieces_of(boundary, charts)
-    size = boundary.size
-    found = [
-        leaf for chart in charts.values() for leaf in face_leaves(boundary, chart, pieces, size)
-    ]
-    ranges = {k: _parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
-    cones = edge_cones(charts, pieces, ranges)
-    round_faces = {}
-    for piece in pieces:
-        kind, record = natural_of(charts[piece.chart])
-        if kind > TORUS_THROUGH:
-            round_faces[piece.edge] = kind, record
-    for number, parts in ranges.items():
-        if parts:
-            beside = round_faces.get(number, (-1, np.zeros(9)))
-            found += edge_leaves(boundary, number, parts, cones[number], beside)
-    found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
-    return found, pieces

@@ -78,7 +78,7 @@ def _middle(solid: SolidModel, side: int, row: Array, other: Array) -> Array | N
             ints, reals = solid.boundary.ints, solid.boundary.reals
             if not on_face(ints, reals, parts[0].chart, float(at[0]), float(at[1])):
                 return None
-        return leaf_jet_of(solid.packed, leaves[0], float(at[0]), float(at[1]))[0]
+        return np.asarray(leaf_jet_of(solid.packed, leaves[0], float(at[0]), float(at[1]))[0])
     if not _share_plane(solid, features[0], features[1]):
         return None
     ends = [

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,15 +14,16 @@ from standoff.checks.arrays import finite
 from standoff.geometry.surfaces import Surface
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
+from standoff.solids.plotted import Plotted, checked_answer
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.solid_model import SolidModel, as_model
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Solid(SolidModel):
+class Solid(SolidModel, Plotted):
     """A solid that need not be convex, in its own frame.
 
     It wraps a `Boundary`, or a `Body`, whose faces may bend either way and have holes, and whose
@@ -106,34 +106,20 @@ class Solid(SolidModel):
         """
         return spatial_distance(a, b, pose_a, pose_b, within=within)
 
-    def plot(self, path: str | Path | None = None, *, unit: str = "") -> Figure:
-        """Draw the solid from two opposite sides, its convex, reflex and smooth edges told apart.
+    def _figure(self, unit: str) -> Figure:
+        from standoff.solids.drawing.spatial_picture import solid_figure
 
-        Parameters
-        ----------
-        path : str or path, optional
-            Also write the picture there, whole or not at all: .png, .svg or .pdf.
-        unit : str
-            Label of lengths.
+        return solid_figure(self.boundary, self.name, unit)
 
-        Returns
-        -------
-        matplotlib.figure.Figure
+    def pictured(
+        self, a: Any, b: Any, answer: Any, view: tuple[float, float] | None, unit: str
+    ) -> Figure:
+        """The picture that ``so.plot`` makes of two solids, of which this is one; see `Plotted`."""
+        from standoff.solids.drawing.spatial_picture import pair_figure
 
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty or has a different file extension.
-        OSError
-            If the file cannot be written.
-        """
-        from standoff.solids.drawing.pictures import picture_of
-
-        return picture_of(self, path, str(unit))
+        one, other = as_model(a), as_model(b)
+        names, told = (one.name, other.name), checked_answer(answer)
+        return pair_figure((one.boundary, other.boundary), names, told, view, unit)
 
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside the solid or on its boundary.

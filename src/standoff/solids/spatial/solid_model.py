@@ -21,21 +21,18 @@ from standoff.wording import printable
 
 
 class SolidModel:
-    """What the search reads of a solid; the arguments are those of `Solid`.
+    """What the search reads of a solid; its arguments are those of `Solid`, and so are its errors.
 
-    Parameters
+    Attributes
     ----------
-    boundary : Boundary or Body
-        Spatial, bounded, with faces and without a radius.
-    volume, area : float, optional
-        Of the maker, length cubed and squared: compared with those of the boundary.
-    relative : float, optional
-        How far they may differ, as a part of them.
-
-    Raises
-    ------
-    StandoffError
-        A boundary of another kind, or a volume or an area that differs.
+    boundary : Boundary
+    own, numbers : arrays
+        Its leaves and their tree, as ``kernels.solids.spatial_layout`` lays them out.
+    leaves : list of Leaf
+    edges_sampled : tuple of int
+        The edges whose kind (convex, reflex, smooth) is not proven, but only sampled. A sharp one
+        of them is searched from both sides, so that its kind does not matter.
+    references, vertex_normals : what is found out only once it is asked for.
     """
 
     def __init__(
@@ -61,7 +58,7 @@ class SolidModel:
         self.boundary = boundary
         self._compare("volume", volume, relative)
         self._compare("area", area, relative)
-        self.own, self.numbers, self.leaves = packed_leaves(boundary)
+        self.own, self.numbers, self.leaves, self.edges_sampled = packed_leaves(boundary)
         self.references: Array | None = None
         self.vertex_normals: dict[int, Array | None] = {}
 
@@ -91,13 +88,23 @@ class SolidModel:
         return self.boundary.name
 
     @property
+    def dimension(self) -> int:
+        """3."""
+        return 3
+
+    @property
+    def bounded(self) -> bool:
+        """True."""
+        return True
+
+    @property
     def size(self) -> float:
         """Diagonal of the box around it, length."""
         return self.boundary.size
 
     @property
     def report(self) -> BoundaryReport | BodyReport:
-        """What the checks at construction found."""
+        """What the checks at construction found, as `check` returns it."""
         return self.boundary.report
 
     def check(self) -> BoundaryReport | BodyReport:

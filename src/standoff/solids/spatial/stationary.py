@@ -19,7 +19,7 @@ from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
 
 # Directions that are looked into at a vertex that is a face's collapsed side.
-AROUND = 17
+WAYS_AROUND = 17
 
 
 def is_stationary(pair: PlacedPair, place: Place, sine: float = AT_OPTIMUM) -> bool:
@@ -93,8 +93,9 @@ def _steepest_from_side(solid: SolidModel, chart: int, vertex: int, n: Array) ->
         rect = leaf.reals[:4]
         for side in range(4):
             across, other = divmod(side, 2)
-            spots = np.linspace(*rect[2 - 2 * across : 4 - 2 * across], AROUND)
-            level = np.full(AROUND, rect[side])
+            first, last = rect[2 - 2 * across : 4 - 2 * across].tolist()
+            spots = np.linspace(first, last, WAYS_AROUND)
+            level = np.full(WAYS_AROUND, rect[side])
             where = (level, spots) if across == 0 else (spots, level)
             jets = [leaf_jet_of(solid.packed, k, u, v) for u, v in zip(*where, strict=True)]
             if np.linalg.norm(jets[0][0] - point) > COLLAPSED_SIDE * solid.size:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import product
 
@@ -57,17 +58,26 @@ def continuum_of(
     """
     most = found.upper + found.tolerance
     told: Continuum | None = None
-    ordered = sorted(places, key=lambda place: -_freedom(pair, place))
-    for place in ordered[:TRIED]:
+    for place in _likeliest(pair, places)[:TRIED]:
         others = _others(pair, place, most, senses)
         if others and (told is None or told.kind != "surface"):
             told = _described(place, others, places)
     return told
 
 
-def _freedom(pair: PlacedPair, place: Place) -> int:
-    """How many parameters a pair of leaves has."""
-    return pair.a.leaves[int(place.row[1])].dim + pair.b.leaves[int(place.row[2])].dim
+def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
+    """Places of pairs of leaves with the most parameters first; among them those of features that
+    have the most places in common."""
+    leaves = [
+        (pair.a.leaves[int(place.row[1])], pair.b.leaves[int(place.row[2])]) for place in places
+    ]
+    features = [(one.feature, other.feature) for one, other in leaves]
+    often = Counter(features)
+    ranks = [
+        (-one.dim - other.dim, -often[both])
+        for (one, other), both in zip(leaves, features, strict=True)
+    ]
+    return [places[k] for k in sorted(range(len(places)), key=lambda k: ranks[k])]
 
 
 def _others(

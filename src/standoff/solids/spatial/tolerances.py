@@ -72,3 +72,9 @@ IN_CONTACT: Final = 1e-3
 """Sine of the angle between the normals at a place of contact: where boundaries are nearer than the
 tolerance their normals differ by up to its root, 1e-5, and by more where they bend sharply. At
 places where they cross it is far greater."""
+ONE_AXIS: Final = 1e-12
+"""Sine of the angle of two axes, and part of the size between them, below which they are one: a few
+roundings of their coordinates."""
+TURN_ROUNDING: Final = 1e-9
+"""Sine and radians: for the rounding of computed normals, and of an axis that differs from another
+by `ONE_AXIS`, in the turn of an edge."""

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.boundary import Boundary
+from standoff.bodies.face_leaves import face_charts
 from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.patch_bounds import between
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
-from standoff.solids.spatial.leaves import Leaf, all_leaves, box_of
+from standoff.kernels.solids.torus_potential import TORUS_THROUGH
+from standoff.solids.spatial.analytic import natural_of
+from standoff.solids.spatial.edge_kinds import proven_kinds, sampled_edges
+from standoff.solids.spatial.leaves import (
+    Leaf,
+    box_of,
+    edge_cones,
+    edge_leaves,
+    face_leaves,
+    parts_of_edge,
+    vertex_leaf,
+)
 from standoff.solids.spatial.tolerances import CONE_ROUNDINGS, NO_AXIS
-from standoff.solids.spatial.trims import Piece
+from standoff.solids.spatial.trims import Piece, pieces_of
 
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
 
@@ -23,9 +38,44 @@ class _Node:
         self.reals = np.zeros(S.NODE_REALS)
 
 
-def packed_leaves(boundary: PackedParts) -> tuple[NDArray[np.int64], Array, list[Leaf]]:
-    """(ints, reals, leaves) of a boundary, laid out as in ``kernels.solids.spatial_layout``."""
-    leaves, pieces = all_leaves(boundary)
+def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, ...]]:
+    """All leaves of a boundary, the pieces of its trimming curves, and the edges whose kind only
+    samples decide."""
+    charts = {c.number: c for c in face_charts(boundary)}
+    pieces = pieces_of(boundary, charts)
+    size = boundary.size
+    found = [
+        leaf for chart in charts.values() for leaf in face_leaves(boundary, chart, pieces, size)
+    ]
+    sampled = sampled_edges(proven_kinds(boundary, charts, pieces), boundary.edge_kinds)
+    ranges = {k: parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
+    cones = edge_cones(charts, pieces, ranges)
+    round_faces = {}
+    for piece in pieces:
+        kind, record = natural_of(charts[piece.chart])
+        if kind > TORUS_THROUGH:
+            round_faces[piece.edge] = kind, record
+    for number, parts in ranges.items():
+        if parts:
+            beside = round_faces.get(number, (-1, np.zeros(9)))
+            proven = number not in sampled
+            found += edge_leaves(boundary, number, parts, cones[number], beside, proven)
+    found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
+    return found, pieces, sampled
+
+
+class Packed(NamedTuple):
+    """A solid's leaves and tree, laid out as in ``kernels.solids.spatial_layout``."""
+
+    own: NDArray[np.int64]
+    numbers: Array
+    leaves: list[Leaf]
+    edges_sampled: tuple[int, ...]
+
+
+def packed_leaves(boundary: Boundary) -> Packed:
+    """The leaves of a boundary and the tree over them."""
+    leaves, pieces, sampled = all_leaves(boundary)
     nodes = _grown(leaves)
     ints, reals = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER)
     lists: list[int] = []
@@ -56,7 +106,7 @@ def packed_leaves(boundary: PackedParts) -> tuple[NDArray[np.int64], Array, list
     packed = np.array([*ints, *leaf_rows, *node_rows, *piece_rows, *lists], dtype=np.int64)
     numbers = np.concatenate([reals, *blocks])
     packed.flags.writeable = numbers.flags.writeable = False
-    return packed, numbers, leaves
+    return Packed(packed, numbers, leaves, sampled)
 
 
 def _feature(boundary: PackedParts, piece: Piece) -> int:
@@ -119,5 +169,6 @@ def _cone_round(cones: list[Array]) -> list[float]:
     if size <= NO_AXIS or max(c[3] for c in known) >= np.pi:
         return [0.0, 0.0, 1.0, np.pi]
     axis = axis / size
-    reach = max(float(between(axis, c[:3])) + float(c[3]) for c in known) + CONE_ROUNDINGS
+    each = np.array(known)
+    reach = float((between(axis[:, None], each[:, :3].T) + each[:, 3]).max()) + CONE_ROUNDINGS
     return [*axis, reach if reach < np.pi else np.pi]

@@ -1,4 +1,4 @@
-"""Rigid bodies of several convex pieces."""
+"""Rigid bodies of several pieces: what they are, below what asks them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose, PoseLike
@@ -16,29 +15,30 @@ from standoff.read_only import KeepsReadOnly
 from standoff.tracking.inputs import matrix_and_mark
 from standoff.wording import counted
 from standoff.world.poses import check_level
+from standoff.world.shapes import Shape, as_shape, dimension_of_shape, is_flat
 
 
 class Piece(NamedTuple):
-    """One convex piece of a compound, and where it is fixed.
+    """One piece of a compound, and where it is fixed.
 
     Attributes
     ----------
-    body : Body
+    body : Body, Solid or PlanarSolid
     pose : Pose
         Of the piece's frame in the compound's: a rotation to roundoff, so that one that is composed
         with it is as near to one as before; of a planar compound's exactly in z = 0.
     """
 
-    body: Body
+    body: Shape
     pose: Pose
 
 
-PieceLike: TypeAlias = "Body | Piece | tuple[Body, PoseLike]"
-"""A body in its place, or with its pose in the compound's frame."""
+PieceLike: TypeAlias = "Shape | Piece | tuple[Shape, PoseLike]"
+"""A body or a solid in its place, or with its pose in the compound's frame."""
 
 
-class Compound(KeepsReadOnly):
-    """A rigid body of several convex pieces with fixed placements: their union.
+class PieceUnion(KeepsReadOnly):
+    """A rigid body of several pieces with fixed placements: what a world reads of a `Compound`.
 
     Attributes
     ----------
@@ -71,28 +71,6 @@ class Compound(KeepsReadOnly):
         return f"<Compound of {counted(len(self), 'piece')}: {', '.join(self.pieces)}>"
 
 
-def compound(pieces: Mapping[str, PieceLike]) -> Compound:
-    """A rigid body of several convex pieces with fixed placements.
-
-    Parameters
-    ----------
-    pieces : mapping of str to Body or (Body, pose)
-        By name; a piece without a pose has the compound's frame for its own.
-
-    Returns
-    -------
-    Compound
-
-    Raises
-    ------
-    TypeError
-        Not a mapping, a name that is no string, a piece that is no body.
-    ValueError
-        No piece, no pose, planar pieces among spatial ones, a planar piece out of z = 0.
-    """
-    return Compound(pieces)
-
-
 def is_mapping(given: Any) -> bool:
     """Is it a mapping?"""
     return isinstance(given, Mapping)
@@ -112,12 +90,15 @@ def name_of(name: Any) -> str:
 
 def _piece(name: str, given: Any) -> Piece:
     body, pose = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
-    if not isinstance(body, Body):
+    shape = as_shape(body)
+    if shape is None:
         raise StandoffTypeError(
-            f"The piece {name!r} is {shown(given)}: give a Body, or (body, pose).", "pieces", given
+            f"The piece {name!r} is {shown(given)}: give a Body or a Solid, or (body, pose).",
+            "pieces",
+            given,
         )
     try:
-        return Piece(body, Pose.identity() if pose is None else Pose.of(pose))
+        return Piece(shape, Pose.identity() if pose is None else Pose.of(pose))
     except StandoffError as error:
         raise type(error)(f"The piece {name!r}: {error}", "pieces", given) from error
 
@@ -142,9 +123,9 @@ def check_in_plane(pieces: Mapping[str, Piece]) -> None:
     check_level(list(pieces), [matrix_and_mark(x.pose)[0] for x in pieces.values()], "pieces")
 
 
-def dimension_of(bodies: Mapping[str, Body]) -> int:
-    planar = [name for name, body in bodies.items() if body.dimension == 2]
-    spatial = [name for name, body in bodies.items() if not body.flat]
+def dimension_of(bodies: Mapping[str, Shape]) -> int:
+    planar = [name for name, body in bodies.items() if dimension_of_shape(body) == 2]
+    spatial = [name for name, body in bodies.items() if not is_flat(body)]
     if planar and spatial:
         raise StandoffError(
             f"{planar[0]!r} is planar and {spatial[0]!r} is not: a compound, and a world, is of "

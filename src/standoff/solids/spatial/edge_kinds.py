@@ -1,0 +1,216 @@
+"""Kinds of edges, proven: convex, reflex or smooth by bounds of both faces' normals all along.
+
+With the unit normals n and m of both faces and the unit tangent t along which the first face's loop
+runs, (n × m) . t is the sine of the edge's turn, above 0 at a convex edge. Where n, m and t are in
+cones of the half angles a, b and c, it differs from its value at their axes by no more than
+2 sin(a / 2) + 2 sin(b / 2) + 2 sin(c / 2). Where that does not decide, a part of an edge is halved.
+
+Around an arc whose faces both are turned about its axis, the turn is the same all along, so that
+one place decides; so it does along a line of two faces with one normal each along it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from standoff.bodies.boundary import EdgeKind
+from standoff.bodies.face_leaves import FaceChart
+from standoff.bodies.packed_parts import PackedParts
+from standoff.bodies.tolerances import SMOOTH_ANGLE
+from standoff.geometry.curves import ConicArc, Curve
+from standoff.geometry.patch_bounds import between
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import chart_normal, coedge_parameters
+from standoff.kernels.solids.torus_potential import AXIS_OF, CENTRE_OF, CONE_OF, TORUS_THROUGH
+from standoff.solids.spatial.analytic import natural_of, round_arc
+from standoff.solids.spatial.derivative_bounds import curve_derivatives
+from standoff.solids.spatial.leaves import UNKNOWN, Cone, edge_flags, face_cones
+from standoff.solids.spatial.tolerances import ONE_AXIS, TURN_ROUNDING
+from standoff.solids.spatial.trims import Piece, edge_ranges
+
+# Parts of an edge at first, radians; and how often a part is halved.
+FIRST_ARC = 0.6
+MOST_HALVINGS = 5
+
+Range = tuple[float, float]
+
+
+class Side(NamedTuple):
+    """A face at an edge: its number, and +1 where its loop runs along the edge's parameter."""
+
+    face: int
+    way: float
+
+
+def proven_kinds(
+    boundary: PackedParts, charts: dict[int, FaceChart], pieces: list[Piece]
+) -> list[EdgeKind | None]:
+    """Of each edge, what is proven of all its points; None where only samples decide."""
+    sides = _sides(boundary)
+    found: list[EdgeKind | None] = [None] * boundary.n_edges
+    asked: dict[int, list[Range]] = {}
+    for k, edge in enumerate(boundary.edge_parts):
+        if len(sides[k]) != 2:
+            continue
+        found[k] = _constant(boundary, charts, pieces, sides[k], k)
+        if found[k] is None:
+            asked[k] = list(edge_ranges(edge.curve, FIRST_ARC, boundary.size))
+    told: dict[int, set[EdgeKind]] = {k: set() for k in asked}
+    for depth in range(MOST_HALVINGS + 1):
+        waiting: dict[int, list[Range]] = {}
+        cones = face_cones(charts, pieces, asked)
+        for k, parts in asked.items():
+            curve = boundary.edge_parts[k].curve
+            tangents = _tangents(curve, parts)
+            for number, part in enumerate(parts):
+                kind = _decided(cones.get((k, number), {}), tangents[number], sides[k])
+                if kind is not None:
+                    told[k].add(kind)
+                elif depth < MOST_HALVINGS and not _smooth(boundary, k):
+                    middle = 0.5 * (part[0] + part[1])
+                    waiting.setdefault(k, []).extend([(part[0], middle), (middle, part[1])])
+                else:
+                    told[k] = set(EdgeKind)
+        asked = {k: parts for k, parts in waiting.items() if len(told[k]) < 2}
+    for k, kinds in told.items():
+        found[k] = next(iter(kinds)) if len(kinds) == 1 else None
+        if kinds == {EdgeKind.CONVEX, EdgeKind.REFLEX}:
+            found[k] = EdgeKind.MIXED
+    return found
+
+
+def sampled_edges(kinds: list[EdgeKind | None], told: tuple[EdgeKind, ...]) -> tuple[int, ...]:
+    """Edges whose kind, as the boundary tells it by samples, is not the proven one."""
+    return tuple(k for k, (one, other) in enumerate(zip(kinds, told, strict=True)) if one != other)
+
+
+def _smooth(boundary: PackedParts, edge: int) -> bool:
+    """Was an edge found to be smooth? No halving makes its normals' cones as narrow as that."""
+    return bool(edge_flags(boundary, edge) & L.SMOOTH)
+
+
+def _sides(boundary: PackedParts) -> list[list[Side]]:
+    """The faces of each edge."""
+    found: list[dict[int, float]] = [{} for _ in range(boundary.n_edges)]
+    ints, reals = boundary.ints, boundary.reals
+    for chart in range(int(ints[L.N_CHARTS])):
+        row = int(ints[L.CHARTS]) + L.CHART_STRIDE * chart
+        outward = float(reals[int(ints[row + L.CHART_REALS]) + L.OUTWARD])
+        first, count = int(ints[row + L.CHART_COEDGE]), int(ints[row + L.CHART_N_COEDGES])
+        for coedge in range(first, first + count):
+            at = int(ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+            edge = int(ints[at + L.COEDGE_EDGE])
+            if edge >= 0:
+                way = float(ints[at + L.COEDGE_SIDE]) * outward
+                found[edge][int(ints[row + L.CHART_FACE])] = way
+    return [[Side(face, way) for face, way in each.items()] for each in found]
+
+
+def _tangents(curve: Curve, parts: list[Range]) -> list[Cone]:
+    """A cone around the directions of a curve in each part."""
+    found = []
+    for (first, last), d in zip(parts, curve_derivatives(curve, parts), strict=True):
+        middle = 0.5 * (first + last)
+        tangent = np.asarray(curve.jet(middle)[1], dtype=float)
+        size = float(np.linalg.norm(tangent))
+        away = float(d[1]) * 0.5 * (last - first)
+        known = size > 0.0 and away < size
+        angle = float(np.arcsin(away / size)) if known else UNKNOWN
+        found.append((tangent / (size or 1.0), angle))
+    return found
+
+
+def _decided(cones: dict[int, list[Cone]], tangent: Cone, sides: list[Side]) -> EdgeKind | None:
+    """The kind of a part of an edge by the cones of its faces' normals and of its tangents."""
+    kinds = set()
+    for n, a in cones.get(sides[0].face, []):
+        for m, b in cones.get(sides[1].face, []):
+            kinds.add(_kind(n, m, tangent[0] * sides[0].way, (a, b, tangent[1])))
+    return kinds.pop() if len(kinds) == 1 else None
+
+
+def _kind(n: Array, m: Array, t: Array, angles: tuple[float, float, float]) -> EdgeKind | None:
+    if float(between(n, m)) + angles[0] + angles[1] + TURN_ROUNDING <= SMOOTH_ANGLE:
+        return EdgeKind.SMOOTH
+    sine = float(np.cross(n, m) @ t)
+    spare = sum(2.0 * float(np.sin(0.5 * min(angle, np.pi))) for angle in angles) + TURN_ROUNDING
+    if abs(sine) <= spare:
+        return None
+    return EdgeKind.CONVEX if sine > 0.0 else EdgeKind.REFLEX
+
+
+def _constant(
+    boundary: PackedParts,
+    charts: dict[int, FaceChart],
+    pieces: list[Piece],
+    sides: list[Side],
+    edge: int,
+) -> EdgeKind | None:
+    """The kind of an edge that has the same turn all along: none between parts of one surface, that
+    of one place around an arc whose faces are turned about its axis. None of others."""
+    of_edge = [piece for piece in pieces if piece.edge == edge]
+    by_side = [[p for p in of_edge if charts[p.chart].face == side.face] for side in sides]
+    if not all(by_side):
+        return None
+    ones, others = ({p.chart for p in own} for own in by_side)
+    if all(_one_surface(charts[k], charts[m], boundary.size) for k in ones for m in others):
+        return EdgeKind.SMOOTH
+    curve = boundary.edge_parts[edge].curve
+    if not (isinstance(curve, ConicArc) and round_arc(curve)):
+        return None
+    if not all(_turned_about(charts[p.chart], curve, boundary.size) for p in of_edge):
+        return None
+    normals = []
+    middle = 0.5 * (curve.first + curve.last)
+    for own in by_side:
+        piece = next((p for p in own if p.first <= middle <= p.last), own[0])
+        t = min(max(middle, piece.first), piece.last)
+        u, v, *_ = coedge_parameters(boundary.ints, boundary.reals, piece.coedge, t)
+        normals.append(np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v)))
+        tangent = np.asarray(curve.jet(t)[1], dtype=float)
+    way = sides[0].way * tangent / np.linalg.norm(tangent)
+    return _kind(normals[0], normals[1], way, (0.0, 0.0, 0.0))
+
+
+def _one_surface(one: FaceChart, other: FaceChart, size: float) -> bool:
+    """Are two charts parts of one surface, with one outward side?"""
+    a, b = one.surface, other.surface
+    if a.kind == b.kind and one.outward == other.outward and np.array_equal(a.reals, b.reals):
+        return True
+    (kind, first), (same, second) = natural_of(one), natural_of(other)
+    if kind < 0 or kind != same:
+        return False
+    (point, axis), (spot, way) = (first[3:6], first[6:9]), (second[3:6], second[6:9])
+    if kind == TORUS_THROUGH:  # the sign is that of the normal
+        axis, way = first[0] * axis, second[0] * way
+    elif first[0] != second[0]:
+        return False
+    along, off = float(axis @ way), spot - point
+    if kind == TORUS_THROUGH:
+        off = (off @ axis) * axis
+    elif kind == AXIS_OF:
+        off = off - (off @ axis) * axis
+    straight = kind == CENTRE_OF or float(np.linalg.norm(np.cross(axis, way))) <= ONE_AXIS
+    faces = along > 0.0 or kind not in (TORUS_THROUGH, CONE_OF)
+    near = float(np.linalg.norm(off)) + float(np.abs(first[1:3] - second[1:3]).sum())
+    return straight and faces and near <= ONE_AXIS * size
+
+
+def _turned_about(chart: FaceChart, arc: ConicArc, size: float) -> bool:
+    """Does a turn about an arc's axis move a face's surface into itself?"""
+    kind, record = natural_of(chart)
+    if kind < 0:
+        return False
+    basis = arc.basis()
+    axis = np.cross(basis[:, 0], basis[:, 1])
+    axis = axis / np.linalg.norm(axis)
+    point, own = record[3:6], record[6:9]
+    straight = float(np.linalg.norm(np.cross(axis, own))) <= ONE_AXIS
+    if kind == TORUS_THROUGH:
+        return straight
+    off = np.asarray(point - basis[:, 2])
+    beside = float(np.linalg.norm(off - (off @ axis) * axis)) <= ONE_AXIS * size
+    return beside and (straight or kind == CENTRE_OF)

@@ -1,0 +1,233 @@
+"""The pairs with a solid in a frame: each is asked cold, and what was found is kept while it rests.
+
+Bounds that were known go on holding by the ways of the pieces only while they are positive: how
+deep solids are in each other is not known to change by no more than they move. So a pair whose
+bound is not positive is asked again wherever it has moved.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.kernels.state import arrays as K
+from standoff.kernels.world import arrays as W
+from standoff.motion import Pose
+from standoff.solids.answer import Overlap, SolidProximity
+from standoff.solids.inner_ball import ball_inside
+from standoff.solids.of_pieces import OfPieces, answer_of_pieces
+from standoff.solids.query import distance
+from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
+from standoff.tracking.derivatives import Smoothness
+from standoff.tracking.status import Status
+from standoff.world.broad_phase import Placed, Table
+from standoff.world.model import Model
+from standoff.world.moment import Moment
+from standoff.world.pair_answer import gradient_of_bodies
+from standoff.world.pieces import PieceUnion
+from standoff.world.shapes import slack_of
+from standoff.world.state import PAGE, SolidAnswers
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class SolidRows:
+    """The rows of a frame's table that are asked as solids.
+
+    Attributes
+    ----------
+    rows : (n,) array of bool
+    """
+
+    def __init__(
+        self,
+        world: Model,
+        poses: Array,
+        frame: Placed,
+        table: Table,
+        before: SolidAnswers,
+        moment: Moment,
+    ) -> None:
+        self.world, self.poses, self.frame, self.table = world, poses, frame, table
+        self.before, self.moment = before, moment
+        ints, self._owners = table.ints, world.search.pieces.owners
+        has = world.solids.bodies
+        self.rows = has[self._owners[ints[:, W.I_A]]] | has[self._owners[ints[:, W.I_B]]]
+        self._found: dict[int, SolidProximity] = {}
+        self._asked: set[int] = set()
+
+    def settle(self, fates: Ints) -> None:
+        """Which rows rest, whatever their status: a cold query would find the same; and which must
+        be asked, though another pair of pieces seems nearer."""
+        ints, known, still = self.table.ints, self.table.known, self.frame.still
+        for k in np.flatnonzero(self.rows).tolist():
+            key, p, q = ints[k, [W.I_KEY, W.I_A, W.I_B]].tolist()
+            old = self.before.pieces.get(key)
+            if old is not None and still[p] and still[q]:
+                fates[k] = W.RESTING
+                self._found[key] = old
+                self._note(k, old)
+            elif fates[k] != W.FAR or known[k, W.C_BOUND] <= 0.0:
+                fates[k] = W.NEW
+
+    def all_asked(self, asking: Ints, fates: Ints) -> bool:
+        """Were all rows that are to be asked again found to be far in this frame?"""
+        again = np.array([k in self._asked for k in asking.tolist()], dtype=bool)
+        fates[asking[again]] = W.FAR
+        return bool(again.all())
+
+    def ask(self, asking: Ints, fates: Ints) -> Ints:
+        """Ask those of some rows that are asked as solids, each once in a frame; those beyond their
+        horizon are far. Returns the other rows."""
+        solid = self.rows[asking]
+        mine = [k for k in asking[solid].tolist() if k not in self._asked]
+        for done, k in enumerate(mine, 1):
+            found = self._answer(k)
+            if self.moment.progress is not None:
+                self.moment.progress(done, len(mine))
+            self._asked.add(k)
+            self._note(k, found)
+            far = found.status is Status.FAR
+            fates[k] = W.FAR if far else W.NEW
+            if not far:
+                self._found[int(self.table.ints[k, W.I_KEY])] = found
+        return asking[~solid]
+
+    def _answer(self, k: int) -> SolidProximity:
+        """A cold query; roundoff of placements is in its bounds."""
+        p, q = self.table.ints[k, [W.I_A, W.I_B]].tolist()
+        a, b = self._solids(p, q)
+        doubt = self._composed(p) + self._composed(q)
+        horizon = float(self.table.known[k, W.C_HORIZON])
+        # more than the horizon, so that the bound of what is far is beyond it
+        more = doubt + slack_of(a) + slack_of(b) + PROOF_TOLERANCE * (a.size + b.size)
+        within = None if horizon == math.inf else horizon + more
+        found = distance(a, b, self._pose(p), self._pose(q), within=within)
+        return replace(
+            found,
+            lower_bound=found.lower_bound - doubt,
+            upper_bound=found.upper_bound + doubt,
+        )
+
+    def _solids(self, p: int, q: int) -> tuple[Any, Any]:
+        return self.world.solids.asked[p], self.world.solids.asked[q]
+
+    def _composed(self, p: int) -> float:
+        placed = self.world.search.pieces.facts[p, W.F_PLACED] != 0.0
+        return float(self.frame.placed[p, W.P_PAD]) if placed else 0.0
+
+    def _pose(self, p: int) -> Pose:
+        row = self.frame.placed[p]
+        return Pose(row[W.P_ROTATION : W.P_SHIFT].reshape(3, 3), row[W.P_SHIFT : W.P_SHIFT + 3])
+
+    def _note(self, k: int, found: SolidProximity) -> None:
+        """What an answer says of the signed distance, into the table of pairs."""
+        ints, known, placed = self.table.ints, self.table.known, self.frame.placed
+        inside = bool(found.inside)
+        known[k, W.C_BOUND] = -math.inf if inside else found.lower_bound
+        known[k, W.C_UPPER] = 0.0 if inside else found.upper_bound
+        known[k, W.C_TRAVEL] = placed[ints[k, [W.I_A, W.I_B]], W.P_TRAVEL].sum()
+        ints[k, W.I_STATUS], ints[k, W.I_INSIDE] = found.status.value, 0
+
+    def answers(
+        self, fates: Ints, pages: tuple[Array, ...]
+    ) -> tuple[SolidAnswers, tuple[Array, ...]]:
+        """What was found of all pairs of bodies, with a page of their numbers."""
+        ints, known = self.table.ints, self.table.known
+        fates[self.rows & (known[:, W.C_BOUND] > known[:, W.C_HORIZON])] = W.FAR
+        groups = ints[:, W.I_KEY] // self.world.most**2
+        near = np.flatnonzero(self.rows & (fates != W.FAR))
+        order = near[np.lexsort((known[near, W.C_UPPER], groups[near]))]
+        whole: dict[int, SolidProximity] = {}
+        blocks: list[Array] = []
+        ints[self.rows, W.I_ROW] = -1
+        for first in order[np.flatnonzero(np.diff(groups[order], prepend=-1))].tolist():
+            group = int(groups[first])
+            begin, end = np.searchsorted(groups, [group, group + 1])
+            found = self._whole(np.arange(begin, end), fates, int(groups[first]))
+            ints[first, W.I_ROW] = (len(pages) << PAGE) + len(blocks)
+            ints[first, W.I_STATUS] = found.status.value
+            blocks.append(self._block(found, *self._bodies(first)))
+            whole[group] = found
+        kept = {int(ints[k, W.I_KEY]): self._found[int(ints[k, W.I_KEY])] for k in near.tolist()}
+        made = (np.array(blocks),) if blocks else ()
+        return SolidAnswers(kept, whole), (*pages, *made)
+
+    def _bodies(self, k: int) -> tuple[int, int]:
+        i, j = self._owners[self.table.ints[k, [W.I_A, W.I_B]]].tolist()
+        return i, j
+
+    def _whole(self, rows: Ints, fates: Ints, group: int) -> SolidProximity:
+        """The answer of two bodies."""
+        known = self.table.known
+        i, j = self._bodies(int(rows[0]))
+        near = rows[fates[rows] != W.FAR]
+        old = self.before.bodies.get(group)
+        if old is not None and np.all(fates[near] == W.RESTING):
+            return old
+        beyond = float(known[rows[fates[rows] == W.FAR], W.C_BOUND].min(initial=math.inf))
+        first = self.world.search.pieces.first
+        counts = int(first[i + 1] - first[i]), int(first[j + 1] - first[j])
+        if len(rows) < counts[0] * counts[1]:  # the others are beyond the search's reach
+            beyond = min(beyond, self.world.search.reach)
+        parts = [self._part(k) for k in near.tolist()]
+        found = answer_of_pieces(parts, counts, beyond, self._ball)
+        chosen = next(part for part in parts if part.names == found.pieces)
+        arms = np.array([self._arm(p) for p in (chosen.a + first[i], chosen.b + first[j])])
+        poses = tuple(
+            np.concatenate([self.poses[body, :3, :3].ravel(), self.poses[body, :3, 3]])
+            for body in (i, j)
+        )
+        rows_of_bodies = gradient_of_bodies(found.gradient_rows, arms)
+        return replace(found, gradient_rows=rows_of_bodies, poses=(poses[0], poses[1]))
+
+    def _part(self, k: int) -> OfPieces:
+        key, p, q = self.table.ints[k, [W.I_KEY, W.I_A, W.I_B]].tolist()
+        solids = self._solids(p, q)
+        (a, one), (b, other) = self._piece(p), self._piece(q)
+        return OfPieces(a, b, (one, other), self._found[key], solids)
+
+    def _piece(self, p: int) -> tuple[int, str]:
+        """Its number in its body, and its name."""
+        i = int(self._owners[p])
+        number = p - int(self.world.search.pieces.first[i])
+        body = self.world.listed[i][1]
+        return number, list(body.pieces)[number] if isinstance(body, PieceUnion) else ""
+
+    def _arm(self, p: int) -> Array:
+        """From the body's origin to the piece's, world axes."""
+        shift = self.frame.placed[p, W.P_SHIFT : W.P_SHIFT + 3]
+        return np.asarray(shift - self.poses[self._owners[p], :3, 3])
+
+    def _ball(self, part: OfPieces) -> Overlap:
+        """Inside the piece that is inside the other."""
+        found = part.found
+        point, pose = (
+            (found.point_a, found.poses[0])
+            if found.inside == "A"
+            else (found.point_b, found.poses[1])
+        )
+        inner = part.solids["AB".index(found.inside)]
+        return ball_inside(inner, Pose(pose[:9].reshape(3, 3), pose[9:]), point, found.normal)
+
+    def _block(self, found: SolidProximity, i: int, j: int) -> Array:
+        """What the arrays of all pairs read of an answer."""
+        block = np.full(K.N_BLOCK, np.nan)
+        block[K.DISTANCE], block[K.LOWER_BOUND] = found.distance, found.lower_bound
+        block[K.UPPER_BOUND], block[K.STATUS] = found.upper_bound, found.status.value
+        for at, vector in (
+            (K.POINT_A, found.point_a),
+            (K.POINT_B, found.point_b),
+            (K.NORMAL, found.normal),
+        ):
+            block[at : at + 3] = vector
+        block[K.BLOCK_POLYTOPE] = 0.0
+        if self.moment.has_twist and found.smoothness is Smoothness.SMOOTH:
+            twist = self.moment.twists[[i, j], :6].ravel()
+            block[K.OUT_RATE] = found.gradient_rows @ twist
+        return block

@@ -1,0 +1,115 @@
+"""All pairs of an assembly: answers, verdicts, and the report's page and picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from parts import bolt, plate_with_hole, ring
+
+import standoff as so
+from standoff.clearance.assembly import AssemblyFile
+from standoff.clearance.fits import Fit
+from standoff.clearance.page import page_of
+from standoff.clearance.report import (
+    Looked,
+    Report,
+    Wanted,
+    bounds_of,
+    nearest_of,
+    report_on,
+)
+from standoff.clearance.verdicts import Verdict
+
+PARTS = {
+    "plate": plate_with_hole(8.0, 1.0, 1.1),
+    "bolt": bolt(1.0, 2.0, 3.0, 4.0),
+    "ring": ring(2.6, 0.4),
+    "ball": so.shapes.ellipsoid(0.2, 0.2, 0.2),
+    "far": so.shapes.ellipsoid(0.2, 0.3, 0.2),
+}
+PLACES = {
+    name: so.Pose(np.eye(3), place)
+    for name, place in {
+        "plate": [0.0, 0.0, 1.0],
+        "bolt": [0.0, 0.0, -0.5],
+        "ring": [0.0, 0.0, 3.0],
+        "ball": [3.0, 3.0, 1.5],
+        "far": [50.0, 0.0, 0.0],
+    }.items()
+}
+"""A bolt in a plate's hole with 0.1 of play, a ring around it, a ball inside the plate."""
+
+
+def answered(within: float) -> tuple[so.World, so.world.WorldAnswer]:
+    world = so.World(PARTS, within=within)
+    return world, world.distances(PLACES)
+
+
+@pytest.fixture(scope="module")
+def found() -> tuple[so.World, so.world.WorldAnswer]:
+    return answered(10.0)
+
+
+def reported(found: tuple[so.World, so.world.WorldAnswer], wanted: Wanted) -> Report:
+    world, answer = found
+    near = nearest_of(answer, 0.0)
+    return report_on(world, near, bounds_of(world, answer, near), wanted)
+
+
+def test_every_pair_has_its_answer(found: tuple[so.World, so.world.WorldAnswer]) -> None:
+    _, answer = found
+    assert answer.certified
+    assert len(answer.pairs) == 6
+    for name in ("plate", "bolt", "ring", "ball"):
+        far = answer[name, "far"]
+        assert far.status is so.Status.FAR
+        assert far.lower_bound > 10.0
+    assert answer["plate", "bolt"].distance == pytest.approx(0.1, abs=1e-9)
+    assert answer["bolt", "ring"].distance == pytest.approx(0.2, abs=1e-9)
+    inside = answer["ball", "plate"]
+    assert isinstance(inside, so.world.SolidPairAnswer)
+    assert inside.inside == "A"
+    assert inside.distance == pytest.approx(0.3, abs=1e-9)
+    assert answer.closest is not None
+    assert answer.closest.names == ("plate", "ball")
+
+
+def test_the_report_has_every_verdict(found: tuple[so.World, so.world.WorldAnswer]) -> None:
+    report = reported(found, Wanted(0.15, None))
+    rows = {row.names: row for row in report.rows}
+    inside = rows["plate", "ball"]
+    assert inside.verdict is Verdict.CONTAINED
+    assert "inside the other's material, the wall at least 0.29999" in inside.failure
+    assert rows["plate", "bolt"].verdict is Verdict.APART
+    assert "not proven to keep 0.15" in rows["plate", "bolt"].failure
+    assert not rows["bolt", "ring"].failure
+    assert report.clearance == -np.inf
+    assert report.tally()[Verdict.CONTAINED] == 1
+
+
+def test_a_part_inside_another_is_no_fit_that_is_meant() -> None:
+    fits = (Fit("plate", "ball", 1.0, "meant"),)
+    report = reported(answered(1.0), Wanted(None, fits))
+    (inside,) = [row for row in report.rows if row.verdict is Verdict.CONTAINED]
+    assert inside.failure
+    assert not report.fits[0].holds
+
+
+def test_the_page_names_and_draws_the_parts(
+    found: tuple[so.World, so.world.WorldAnswer],
+) -> None:
+    report = reported(found, Wanted(0.05, None))
+    file = AssemblyFile(Path("assembly.step"), "A bolt in a plate", "mm", (), PLACES)
+    text = page_of(file, report, Looked(0.0, 0.0, 1))
+    for part in (
+        "CONTAINED",
+        "A bolt in a plate",
+        "at rest",
+        "assembly.step",
+        "gap (mm)",
+        "data:image/png",
+    ):
+        assert part in text
+    assert "at 0 s" not in text
