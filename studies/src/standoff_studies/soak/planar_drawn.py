@@ -78,8 +78,8 @@ def drawn_curve(rng: Rng, p: Array, q: Array) -> Drawn:
         return RationalBezier(points, weights), [planar_truth.cubic(points, weights)]
     knot = 0.5 * (points[1] + points[2])
     halves = [points[0], points[1], knot], [knot, points[2], points[3]]
-    curve = NurbsCurve(points, [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0])
-    return curve, [planar_truth.cubic(np.array(half)) for half in halves]
+    spline = NurbsCurve(points, [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0])
+    return spline, [planar_truth.cubic(np.array(half)) for half in halves]
 
 
 def judged(rng: Rng) -> Judged:
@@ -196,5 +196,5 @@ def _crossing(a: Judged, b: Judged, move: tuple[float, float, float, float], sid
     there = planar_truth.any_held(a.outline, b.outline, move)
     back = planar_truth.any_held(b.outline, a.outline, planar_truth.inverse(move))
     if side < 0.0:
-        return not there[1] or back[0]
-    return there[0] or back[0]
+        return bool(not there[1] or back[0])
+    return bool(there[0] or back[0])
