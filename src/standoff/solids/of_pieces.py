@@ -121,6 +121,7 @@ def _overlapping(each: OfPieces, ball_of: BallOf) -> OfPieces:
             continuum=None,
             overlap=ball,
             inside="",
+            open=(),
             gradient_rows=np.zeros(12),
             smoothness=Smoothness.UNDEFINED,
         )
@@ -136,20 +137,23 @@ def _nearest(answers: Sequence[OfPieces], beyond: float) -> OfPieces:
     tied = [each for each in answers if each.found.distance <= most]
     nearest = next((each for each in tied if each.found.continuum), least)
     found = nearest.found
-    open_ = [
+    undecided = [
         each.found
         for each in answers
         if not each.found.certified and each.found.lower_bound < found.lower_bound
     ]
-    if open_:
-        open_.sort(key=lambda each: each.lower_bound)
-        left = [pair for each in open_ for pair in each.open]
-        left.sort(key=lambda pair: pair.lower_bound)
-        found = replace(found, status=open_[0].status, open=tuple(left[:MOST_OPEN]))
+    if undecided:
+        # one that may be nearer has a lower bound below the nearest's own, which is none of these
+        left = [*found.open, *(pair for each in undecided for pair in each.open)]
+        found = replace(
+            found,
+            status=min(undecided, key=lambda each: each.lower_bound).status,
+            open=tuple(sorted(left, key=lambda pair: pair.lower_bound)[:MOST_OPEN]),
+        )
     lower = min(beyond, *(each.found.lower_bound for each in answers))
     several = len(tied) > 1 and found.smoothness is Smoothness.SMOOTH
     smoothness = Smoothness.ONE_SIDED if several else found.smoothness
-    if open_ and lower <= 0.0:
+    if undecided and lower <= 0.0:
         smoothness = Smoothness.UNDEFINED
     others = (each for each in tied if each is not nearest)
     minima = tuple(pair for each in (nearest, *others) for pair in each.found.minima)

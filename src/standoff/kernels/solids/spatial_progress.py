@@ -33,15 +33,15 @@ def evaluations(counts):
 
 
 @small
-def farthest(best):
-    """Pairs that are farther apart are of no interest."""
-    return max(best[LEAST] + best[TOLERANCE], best[ABOVE])
-
-
-@small
 def goal_of(best):
     """What is to be proven where no local minimum is nearer."""
     return max(best[LEAST], best[ABOVE]) - best[TOLERANCE] + best[ROUNDING]
+
+
+@small
+def farthest(best):
+    """Pairs that are farther apart are of no interest; never less than the goal."""
+    return max(max(best[LEAST] + best[TOLERANCE], best[ABOVE]), goal_of(best))
 
 
 @kernel

@@ -17,6 +17,8 @@ Poses = tuple[so.Pose, so.Pose]
 
 PER_LENGTH = 400
 """Samples along a unit of length, of a solid of size 1."""
+CURVES = 10.0, 400.0
+"""Of a loop, least and most."""
 HOLES, SMALL = 0.3, 0.25
 """Shares of solids with a hole, and of small ones, which have room in others."""
 GAPS = (0.3, 1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9)
@@ -76,13 +78,13 @@ def drawn_curve(rng: Rng, p: Array, q: Array) -> Drawn:
         return RationalBezier(points, weights), [planar_truth.cubic(points, weights)]
     knot = 0.5 * (points[1] + points[2])
     halves = [points[0], points[1], knot], [knot, points[2], points[3]]
-    curve = NurbsCurve(points, [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0])
-    return curve, [planar_truth.cubic(np.array(half)) for half in halves]
+    spline = NurbsCurve(points, [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0])
+    return spline, [planar_truth.cubic(np.array(half)) for half in halves]
 
 
 def judged(rng: Rng) -> Judged:
     """A drawn solid; loops that meet themselves or each other are drawn anew."""
-    n = round(float(np.exp(rng.uniform(np.log(10.0), np.log(400.0)))))
+    n = round(float(np.exp(rng.uniform(*np.log(CURVES)))))
     scale = rng.uniform(0.05, 0.3) if rng.uniform() < SMALL else 1.0
     while True:
         loops = [drawn_loop(rng, n, scale)]
@@ -194,5 +196,5 @@ def _crossing(a: Judged, b: Judged, move: tuple[float, float, float, float], sid
     there = planar_truth.any_held(a.outline, b.outline, move)
     back = planar_truth.any_held(b.outline, a.outline, planar_truth.inverse(move))
     if side < 0.0:
-        return not there[1] or back[0]
-    return there[0] or back[0]
+        return bool(not there[1] or back[0])
+    return bool(there[0] or back[0])

@@ -66,21 +66,21 @@ class Verdict:
         )
 
 
-def pool_of(seed: int, number: int, solids: int = SOLIDS) -> list[Judged]:
-    """The solids of a pool."""
+def pool_of(seed: int, number: int, solids: int = 0) -> list[Judged]:
+    """The solids of a pool; so many."""
     rng = np.random.default_rng([seed, number])
-    return [judged(rng) for _ in range(solids)]
+    return [judged(rng) for _ in range(solids or SOLIDS)]
 
 
 def judge_pool(
-    number: int, seed: int, queries: int = QUERIES, ask: Ask = distance
+    number: int, seed: int, queries: int = 0, ask: Ask = distance, solids: int = 0
 ) -> tuple[Verdict, list[str]]:
     """All queries of a pool, and the faults' lines."""
-    pool, rng = pool_of(seed, number), np.random.default_rng([seed, number, 1])
+    pool, rng = pool_of(seed, number, solids), np.random.default_rng([seed, number, 1])
     verdict, lines = Verdict(), []
     a = b = pool[0]
     waiting: list[Poses] = []
-    for k in range(queries):
+    for k in range(queries or QUERIES):
         if not waiting:
             a, b = (pool[i] for i in rng.integers(len(pool), size=2))
             waiting = drawn_poses(a, b, rng)

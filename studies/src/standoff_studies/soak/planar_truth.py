@@ -376,11 +376,12 @@ def outline(loops: list[list[Array]], per_length: float) -> Outline:
     for loop in loops:
         spots = []
         ends = [points_of(row[None], np.array([[0.0, 0.0], [0.0, 1.0]])) for row in loop]
+        # the first piece leads to the second, each other one from where the last one ended
+        gaps = np.linalg.norm(ends[0][:, None] - ends[1 % len(ends)], axis=2).min(axis=1)
+        last = ends[0][0] if gaps[1] <= gaps[0] else ends[0][1]
         for k, (p, q) in enumerate(ends):
-            following = ends[(k + 1) % len(ends)]
-            forward = min(np.linalg.norm(following - q, axis=1)) <= min(
-                np.linalg.norm(following - p, axis=1)
-            )
+            forward = np.linalg.norm(p - last) <= np.linalg.norm(q - last)
+            last = q if forward else p
             count = 8 + int(per_length * float(np.linalg.norm(q - p)))
             t = np.linspace(0.0, 1.0, count)
             spots.append(np.column_stack([np.full(count, number + k), t if forward else 1.0 - t]))

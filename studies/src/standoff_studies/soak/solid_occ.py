@@ -17,7 +17,8 @@ from standoff.solids.spatial.distance import spatial_distance
 from standoff_studies.soak import blocks
 from standoff_studies.soak.solid_judge import truths
 from standoff_studies.soak.solid_outlines import Array
-from standoff_studies.soak.solid_pairs import MAKERS, made
+from standoff_studies.soak.solid_pairs import made
+from standoff_studies.soak.solid_parts import MAKERS
 from standoff_studies.soak.solid_poses import Known, draw_poses, pairs_of
 from standoff_studies.soak.solid_shapes import placed, shape_of
 

@@ -16,7 +16,8 @@ import numpy as np
 from standoff_studies.soak import blocks
 from standoff_studies.soak.solid_meshes import windings_and_distances
 from standoff_studies.soak.solid_outlines import Array
-from standoff_studies.soak.solid_pairs import MAKERS, made
+from standoff_studies.soak.solid_pairs import made
+from standoff_studies.soak.solid_parts import MAKERS
 from standoff_studies.soak.solid_poses import Known
 from standoff_studies.soak.solid_shapes import shape_of, triangles_of
 from standoff_studies.soak.solid_truth import signed
