@@ -88,8 +88,41 @@ def test_a_face_that_crosses_itself(tmp_path: Path) -> None:
     polygon.Close()
     bow = BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(polygon.Wire()).Face(), gp_Vec(0, 0, 5))
     path = made.write_brep(bow.Shape(), tmp_path / "bow.brep")
-    with pytest.raises(CadError, match=r"face \d: SelfIntersectingWire"):
+    with pytest.raises(CadError, match=r"face \d \(a plane\): SelfIntersectingWire near \("):
         so.cad.read_brep(path)
+
+
+def test_a_hole_that_crosses_the_outer_wire(tmp_path: Path) -> None:
+    from OCP.BRepBuilderAPI import (
+        BRepBuilderAPI_MakeEdge,
+        BRepBuilderAPI_MakeFace,
+        BRepBuilderAPI_MakePolygon,
+        BRepBuilderAPI_MakeWire,
+    )
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
+
+    square = BRepBuilderAPI_MakePolygon()
+    for x, y in ((0, 0), (10, 0), (10, 10), (0, 10)):
+        square.Add(gp_Pnt(x, y, 0))
+    square.Close()
+    face = BRepBuilderAPI_MakeFace(square.Wire(), True)
+    circle = gp_Circ(gp_Ax2(gp_Pnt(9, 5, 0), gp_Dir(0, 0, -1)), 2.0)
+    face.Add(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(circle).Edge()).Wire())
+    solid = BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0, 0, 5)).Shape()
+    path = made.write_brep(solid, tmp_path / "crossing.brep")
+    with pytest.raises(CadError, match=r"face 6 \(a plane\): IntersectingWires near \(11, 5, 0\)"):
+        so.cad.read_brep(path)
+
+
+def test_a_solid_inside_out(tmp_path: Path) -> None:
+    box = made.explored(made.box(1, 2, 3), "solid")[0]
+    path = made.write_brep(box.Reversed(), tmp_path / "inside_out.brep")
+    with pytest.raises(CadError, match=r"inside out: its 6 faces, from face 1 \(a plane\)"):
+        so.cad.read_brep(path)
+    report = so.cad.read_brep(path, heal=True).parts[0].report
+    assert "turned its faces, which were inside out" in report.healed
+    assert report.volume == pytest.approx(6.0)
 
 
 def test_a_face_without_area(tmp_path: Path) -> None:

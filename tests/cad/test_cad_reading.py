@@ -93,6 +93,29 @@ def test_an_assembly_has_names_places_and_colours(tmp_path: Path) -> None:
     np.testing.assert_allclose(apart.distance, 8.0, rtol=1e-12)
 
 
+def test_parts_that_bend_inward_answer_as_solids(tmp_path: Path) -> None:
+    part = so.read_step(made.write_step(made.plate(), tmp_path / "plate.step")).parts[0]
+    assert not isinstance(part.shape, so.Body)
+    assert part.solid is part.solid
+    above = np.array([0.0, 0.0, 8.5])
+    apart = so.distance(part.solid, part.solid, None, (np.eye(3), above))
+    np.testing.assert_allclose(apart.distance, 0.5, rtol=1e-9)
+
+
+def test_the_nearer_of_two_rules_is_compared() -> None:
+    from standoff.cad.measures import nearest
+
+    asked: list[bool] = []
+
+    def measure(shape: Any, adaptive: bool) -> float:
+        asked.append(adaptive)
+        return -1.0 if adaptive else 1.01
+
+    assert nearest(measure, None, 1.005, 0.01) == 1.01
+    assert asked == [False]
+    assert nearest(measure, None, 1.001, 1e-6) == 1.0
+
+
 def test_inches_are_converted_and_told(tmp_path: Path) -> None:
     path = made.write_step(made.box(25.4, 25.4, 50.8), tmp_path / "inch.step", unit="INCH")
     assembly = so.read_step(path)

@@ -6,12 +6,10 @@ from functools import cache
 
 import numpy as np
 
-from standoff.bodies import Edge, Face
+from standoff.bodies import Face
 from standoff.bodies.face_leaves import face_charts
 from standoff.geometry import (
-    ConicArc,
     Cylinder,
-    Line,
     Plane,
     Torus,
     ellipsoid_patches,
@@ -19,12 +17,10 @@ from standoff.geometry import (
 from standoff.geometry.quadrics import sphere_atlas
 from standoff.kernels.entries.queries import on_face
 from standoff.solids import Solid
+from standoff_studies.soak import solid_parts
+from standoff_studies.soak.solid_parts import circle
 
 x, y, z = np.eye(3)
-
-
-def circle(radius: float, height: float) -> Edge:
-    return Edge(ConicArc(height * z, radius * x, radius * y))
 
 
 def level(height: float, *loop: tuple[int, int]) -> Face:
@@ -56,39 +52,12 @@ def tube(inner: float, outer: float, low: float, high: float) -> Solid:
 
 @cache
 def bolt() -> Solid:
-    edges = [circle(1, 0), circle(1, 3), circle(2, 3), circle(2, 4)]
-    faces = [
-        level(0, (0, 1)),
-        wall(1, (0, 1), (1, 1)),
-        level(3, (1, 1), (2, 1)),
-        wall(2, (2, 1), (3, 1)),
-        level(4, (3, 1)),
-    ]
-    return Solid.from_brep(edges=edges, faces=faces, name="bolt")
+    return Solid(solid_parts.bolt(1.0, 2.0, 3.0, 4.0).boundary)
 
 
 def prism(outline: list[tuple[float, float]], height: float) -> Solid:
     """Of a polygon in the plane z = 0, up to a height."""
-    n = len(outline)
-    points = np.array([(*p, h) for h in (0.0, height) for p in outline])
-    edges: list[Edge] = []
-
-    def edge(a: int, b: int) -> int:
-        edges.append(Edge(Line(points[a], points[b]), a, b))
-        return len(edges) - 1
-
-    low = [edge(i, (i + 1) % n) for i in range(n)]
-    high = [edge(n + i, n + (i + 1) % n) for i in range(n)]
-    up = [edge(i, n + i) for i in range(n)]
-    faces = [
-        Face((Plane.through(points[0], x, y),), tuple((k, 1) for k in low)),
-        Face((Plane.through(points[n], x, y),), tuple((k, 1) for k in high)),
-    ]
-    for i in range(n):
-        j = (i + 1) % n
-        plane = Plane.through(points[i], points[j] - points[i], z)
-        faces.append(Face((plane,), ((low[i], 1), (up[j], 1), (high[i], -1), (up[i], -1))))
-    return Solid.from_brep(points, edges, faces, name="prism")
+    return Solid(solid_parts.swept(np.array(outline, dtype=float), 0.0, height, 0.0, "prism"))
 
 
 BRACKET = [(0.0, 0.0), (2.0, 0.0), (2.0, 0.4), (0.4, 0.4), (0.4, 1.5), (0.0, 1.5)]

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from parts import bolt, plate_with_hole, ring
 
 import standoff as so
 from standoff.clearance.assembly import AssemblyFile
@@ -21,11 +20,12 @@ from standoff.clearance.report import (
     report_on,
 )
 from standoff.clearance.verdicts import Verdict
+from standoff_studies.soak.solid_parts import bolt, plate, ring
 
 PARTS = {
-    "plate": plate_with_hole(8.0, 1.0, 1.1),
-    "bolt": bolt(1.0, 2.0, 3.0, 4.0),
-    "ring": ring(2.6, 0.4),
+    "plate": plate(8.0, 1.0, 1.1).boundary,
+    "bolt": bolt(1.0, 2.0, 3.0, 4.0).boundary,
+    "ring": ring(2.6, 0.4).boundary,
     "ball": so.shapes.ellipsoid(0.2, 0.2, 0.2),
     "far": so.shapes.ellipsoid(0.2, 0.3, 0.2),
 }

@@ -12,7 +12,7 @@ from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
 
 PROVEN = (Status.CONVERGED, Status.CONTINUUM)
-OFF = (0.0, 1e-9, 1e-6, 1e-3)
+OFF = (0.0, 1e-9, 1e-6, 1e-3, 2e-2)
 
 
 def claimed(a: Solid, b: Solid, turn: np.ndarray, move: np.ndarray, beyond: float) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from solids.spatial_shapes import ball, peg, socket, tube
 from standoff.geometry import ConicArc, Line
-from standoff.solids import PlanarSolid, SolidProximity
+from standoff.solids import OpenPair, Overlap, PlanarSolid, SolidProximity
+from standoff.solids.of_pieces import OfPieces, answer_of_pieces, turned
 from standoff.world import SolidPairAnswer
 
 EYE = np.eye(3)
@@ -199,6 +200,37 @@ def test_how_the_statuses_of_pieces_are_combined() -> None:
     assert found.status is so.Status.TOUCHING
     assert found.pieces == ("two", "")
     close(so.distance(beads, block, at(0.0), at(2.7)), 0.5)
+
+
+def test_an_open_pair_that_may_be_nearer_leaves_the_whole_open() -> None:
+    near = so.distance(BALL, SOCKET, at(0.0), at(1.8))
+    far = so.distance(BALL, SOCKET, at(0.0), at(2.0))
+    left = OpenPair(-0.5, near.feature_a, near.feature_b, np.zeros((8, 3)), np.ones((8, 3)))
+    open_ = replace(far, status=so.Status.WITHIN, lower_bound=-0.5, open=(left,))
+
+    def whole(*found: SolidProximity) -> SolidProximity:
+        parts = [
+            OfPieces(0, k, ("", name), each, (BALL, SOCKET))
+            for k, (name, each) in enumerate(zip(("one", "two"), found, strict=True))
+        ]
+
+        def none(part: OfPieces) -> Overlap:
+            raise AssertionError(part)
+
+        return answer_of_pieces(parts, (1, 2), np.inf, none)
+
+    found = whole(near, open_)
+    assert found.status is so.Status.WITHIN
+    assert found.pieces == ("", "one")
+    assert (found.lower_bound, found.upper_bound) == (-0.5, near.upper_bound)
+    assert found.open == (left,)
+    with pytest.raises(so.StandoffError, match="no gradient"):
+        _ = found.gradient
+    # one whose bound is above it leaves nothing open
+    assert whole(near, replace(open_, lower_bound=0.15)).status is near.status
+    back = turned(found)
+    assert back.open[0].feature_a == left.feature_b
+    np.testing.assert_array_equal(back.open[0].corners_a, left.corners_b)
 
 
 def test_all_minima_of_several_pieces_are_kept() -> None:

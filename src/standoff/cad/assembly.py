@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
 from standoff.geometry.validation import Array
+
+if TYPE_CHECKING:
+    from standoff.solids import Solid
 
 
 @dataclass(frozen=True)
@@ -110,6 +115,13 @@ class Part:
     pose: Array
     colour: tuple[float, float, float, float] | None
     report: PartReport
+
+    @cached_property
+    def solid(self) -> Solid:
+        """The shape as a `Solid`, for distances of parts that need not be convex; made once."""
+        from standoff.solids import Solid
+
+        return Solid(self.shape)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from standoff.cad.opencascade import coordinates, frame_of
-from standoff.cad.tolerances import FITTED_TRIM
+from standoff.cad.tolerances import FITTED_TRIM, SAME_KNOT
 from standoff.errors import StandoffError
 from standoff.geometry.bernstein import basis as bernstein
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
@@ -19,9 +19,9 @@ from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.tolerances import WHOLE_CONIC
 from standoff.geometry.validation import Array
 
-# Degree of a fitted curve, its spans at most, and values compared within each.
+# Degree of a fitted curve, how often a span is halved at most, and values compared within each.
 FIT_DEGREE = 7
-MOST_SPANS = 32
+MOST_HALVINGS = 5
 BETWEEN = 12
 
 
@@ -92,28 +92,40 @@ def converted(geometry: Any, first: float, last: float) -> Converted:
 def fitted_curve(curve: Any, first: float, last: float) -> NurbsCurve:
     """A spline of lower degree near one of a degree that is too high. How far it is from its two
     faces is bounded with its trimming curves."""
-    return NurbsCurve(
-        *approximated(lambda ts: np.array([coordinates(curve.Value(t)) for t in ts]), first, last)
-    )
+
+    def places(ts: Array) -> Array:
+        return np.array([coordinates(curve.Value(t)) for t in ts.tolist()])
+
+    return NurbsCurve(*approximated(places, breaks_of(curve, first, last)))
 
 
-def approximated(
-    places: Callable[[Array], Array], first: float, last: float
-) -> tuple[Array, Array]:
-    """(points, knots) of a spline near a function: spans are halved, all at once, until values
-    between those that it takes agree, or often enough."""
+def breaks_of(curve: Any, first: float, last: float) -> Array:
+    """The ends of a range, and the knots of a curve between them."""
+    knots: list[float] = []
+    if curve.DynamicType().Name().endswith("BSplineCurve"):
+        knots = [curve.Knot(k) for k in range(1, curve.NbKnots() + 1)]
+    near = SAME_KNOT * (last - first)
+    return np.array([first, *(t for t in knots if first + near < t < last - near), last])
+
+
+def approximated(places: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:
+    """(points, knots) of a spline near a function that is smooth between breaks: each span is
+    halved until values between those that it takes agree, or often enough."""
     middles = (np.arange(BETWEEN) + 0.5) / BETWEEN
     basis = bernstein(FIT_DEGREE, middles)
-    spans = 1
+    halvings = np.zeros(len(breaks) - 1, dtype=np.int64)
     while True:
-        breaks = np.linspace(first, last, spans + 1)
         points, knots = interpolated(places, breaks)
-        nets = [points[k * FIT_DEGREE : (k + 1) * FIT_DEGREE + 1] for k in range(spans)]
+        nets = [points[k * FIT_DEGREE : (k + 1) * FIT_DEGREE + 1] for k in range(len(halvings))]
         at = np.concatenate([a + middles * (b - a) for a, b in pairwise(breaks)])
-        off = np.abs(np.concatenate([basis @ net for net in nets]) - places(at)).max()
-        if off <= FITTED_TRIM * np.ptp(points, axis=0).max() or spans >= MOST_SPANS:
+        off = np.abs(np.concatenate([basis @ net for net in nets]) - places(at)).max(axis=1)
+        off = off.reshape(-1, BETWEEN).max(axis=1)
+        due = (off > FITTED_TRIM * np.ptp(points, axis=0).max()) & (halvings < MOST_HALVINGS)
+        if not due.any():
             return points, knots
-        spans *= 2
+        middle = 0.5 * (breaks[:-1] + breaks[1:])[due]
+        halvings = np.repeat(halvings + due, due + 1)
+        breaks = np.sort(np.concatenate([breaks, middle]))
 
 
 def interpolated(places: Callable[[Array], Array], breaks: Array) -> tuple[Array, Array]:

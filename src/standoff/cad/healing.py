@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from standoff.cad.measures import tolerance_of
+from standoff.cad.measures import tolerance_of, volume_of
 from standoff.cad.opencascade import cast, explored, is_kind
 from standoff.cad.tolerances import SEWN_AT_LEAST
 
@@ -25,6 +25,9 @@ def healed(shape: Any) -> tuple[Any, tuple[str, ...]]:
         told.append("OpenCASCADE's ShapeFix changed it")
     solids = list(explored(shape, "solid"))
     shape = solids[0] if len(solids) == 1 else shape
+    if is_kind(shape, "solid") and volume_of(shape) < 0.0:
+        shape = cast("solid", shape.Reversed())
+        told.append("turned its faces, which were inside out")
     after = _counts(shape)
     told += [
         f"{kind}s: {before[kind]} became {after[kind]}"

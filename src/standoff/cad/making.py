@@ -27,6 +27,7 @@ from standoff.cad.measures import (
     area_of,
     faults_of,
     free_edges,
+    nearest,
     size_of,
     tolerance_of,
     volume_of,
@@ -86,15 +87,20 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport]:
                 f"edges miss their faces by up to {bound:.3g}, the file allows {allowed:.3g}"
             )
         residual = max(joined.residual, bound + pieces.moved)
-        boundary = made_boundary(report.name, replace(joined, residual=residual))
+        # what parts miss each other by counts from here on, no longer what they were allowed to
+        within = max(residual, JOIN_TOLERANCE * size)
+        closing = replace(joined, residual=residual, tolerance=within)
+        boundary = made_boundary(report.name, closing)
     except BodyError as error:
         raise Refused(f"{error}{_place(error, pieces)}") from error
-    volume, area = volume_of(shape), area_of(shape)
     found = boundary.check()
     assert isinstance(found, BoundaryReport)
-    off = abs(found.volume - volume) / abs(volume)
+    near = FILE_AREA * found.volume + found.slack * found.area
+    volume = nearest(volume_of, shape, found.volume, near)
+    area = nearest(area_of, shape, found.area, FILE_AREA * found.area)
+    off = abs(found.volume - volume) / volume
     _check_areas(boundary, pieces, size)
-    if off > FILE_AREA + found.slack * found.area / abs(volume):
+    if abs(found.volume - volume) > near:
         raise Refused(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")
     body = _convex(boundary, pieces, joined)
     report = replace(
@@ -132,6 +138,11 @@ def _check(shape: Any, size: float) -> None:
             if at
             else "it is a closed shell, but no solid; heal=True makes it one"
         )
+    if volume_of(shape) < 0.0:
+        raise Refused(
+            f"it is inside out: its {len(faces)} faces, from face 1 (a {kind_of(faces[0])}) on, "
+            "face into the solid; heal=True turns it"
+        )
     faults = faults_of(shape)
     if faults:
         raise Refused("; ".join(faults[:MOST_NAMED]))
@@ -155,9 +166,10 @@ def _check_areas(boundary: Boundary, pieces: Pieces, size: float) -> None:
     """Raise Refused if a face has not the area that OpenCASCADE gives it."""
     slack = boundary.check().slack
     for number, face in enumerate(pieces.sources):
-        theirs = abs(area_of(face))
         own = face_area(boundary, number, size)
-        if abs(own - theirs) > FILE_AREA * (theirs + FILE_AREA * size**2) + slack * size:
+        near = FILE_AREA * (own + FILE_AREA * size**2) + slack * size
+        theirs = nearest(area_of, face, own, near)
+        if abs(own - theirs) > near:
             raise Refused(
                 f"face {number + 1} (a {pieces.kinds[number]}): its area is {own:.9g} here, "
                 f"{theirs:.9g} by OpenCASCADE"

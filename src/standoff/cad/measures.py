@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from OCP.TopoDS import TopoDS_Edge
 
 from standoff.cad.opencascade import coordinates, explored
+from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import QUADRATURE
 
 WRONG = (
@@ -28,22 +30,41 @@ def size_of(shape: Any) -> float:
     return 0.0 if box.IsVoid() else float(np.sqrt(box.SquareExtent()))
 
 
-def area_of(shape: Any) -> float:
+def area_of(shape: Any, adaptive: bool = False) -> float:
+    """The area by one of OpenCASCADE's two rules: of a fixed number of points, or adaptive."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     found = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(shape, found, QUADRATURE, False)
+    if adaptive:
+        BRepGProp.SurfaceProperties_s(shape, found, QUADRATURE, False)
+    else:
+        BRepGProp.SurfaceProperties_s(shape, found, False, False)
     return float(found.Mass())
 
 
-def volume_of(shape: Any) -> float:
+def volume_of(shape: Any, adaptive: bool = False) -> float:
+    """The volume by one of two rules: of a fixed number of points, or that of Gauss and Kronrod in
+    each span. It is negative for a solid that is inside out."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
     found = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, found, QUADRATURE, False, False)
+    if adaptive:
+        BRepGProp.VolumePropertiesGK_s(shape, found, QUADRATURE, False, True, False, False, False)
+    else:
+        BRepGProp.VolumeProperties_s(shape, found, False, False, False)
     return float(found.Mass())
+
+
+def nearest(measure: Callable[[Any, bool], float], shape: Any, own: float, near: float) -> float:
+    """The measure that is nearer to one's own: neither rule is right for all shapes, and the
+    adaptive one is tried where the other is farther off than `near`."""
+    plain = abs(measure(shape, False))
+    if abs(plain - own) <= near:
+        return plain
+    adaptive = abs(measure(shape, True))
+    return min(plain, adaptive, key=lambda value: abs(value - own))
 
 
 def tolerance_of(shape: Any) -> float:
@@ -66,24 +87,36 @@ def faults_of(shape: Any) -> list[str]:
         if not analyzer.IsValid(shell):
             found += _told(f"shell {number}", [BRepCheck_Shell(shell).Orientation()])
     for number, face in enumerate(explored(shape, "face"), 1):
-        if not analyzer.IsValid(face):
-            statuses = [BRepCheck_Face(face).IntersectWires()]
-            for wire in explored(face, "wire"):
-                first, second = TopoDS_Edge(), TopoDS_Edge()
-                statuses.append(BRepCheck_Wire(wire).SelfIntersect(face, first, second))
-            found += _told(f"face {number}", statuses)
+        if analyzer.IsValid(face):
+            continue
+        wires = list(explored(face, "wire"))
+        statuses = [BRepCheck_Face(face).IntersectWires()]
+        near = next(explored(wires[-1], "edge"))
+        for wire in wires:
+            first, second = TopoDS_Edge(), TopoDS_Edge()
+            statuses.append(BRepCheck_Wire(wire).SelfIntersect(face, first, second))
+            near = near if first.IsNull() else first
+        found += _told(f"face {number} (a {kind_of(face)})", statuses, f" near {_middle(near)}")
     return found
 
 
-def _told(place: str, statuses: list[Any]) -> list[str]:
+def _told(place: str, statuses: list[Any], where: str = "") -> list[str]:
     names = sorted({status.name for status in statuses} & set(WRONG))
-    return [f"{place}: {name.removeprefix('BRepCheck_')}" for name in names]
+    return [f"{place}: {name.removeprefix('BRepCheck_')}{where}" for name in names]
+
+
+def _middle(edge: Any) -> str:
+    """The point in the middle of an edge."""
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+
+    curve = BRepAdaptor_Curve(edge)
+    x, y, z = coordinates(curve.Value(0.5 * (curve.FirstParameter() + curve.LastParameter())))
+    return f"({x:.6g}, {y:.6g}, {z:.6g})"
 
 
 def free_edges(shape: Any) -> list[str]:
     """Where a shell is open: middles of edges that bound one face."""
     from OCP.BRep import BRep_Tool
-    from OCP.BRepAdaptor import BRepAdaptor_Curve
 
     users: dict[Any, int] = {}
     kept: dict[Any, Any] = {}
@@ -92,11 +125,4 @@ def free_edges(shape: Any) -> list[str]:
             if not BRep_Tool.Degenerated_s(edge):
                 users[hash(edge)] = users.get(hash(edge), 0) + 1
                 kept[hash(edge)] = edge
-    found = []
-    for key, times in users.items():
-        if times == 1:
-            curve = BRepAdaptor_Curve(kept[key])
-            middle = 0.5 * (curve.FirstParameter() + curve.LastParameter())
-            x, y, z = coordinates(curve.Value(middle))
-            found.append(f"({x:.6g}, {y:.6g}, {z:.6g})")
-    return found
+    return [_middle(kept[key]) for key, times in users.items() if times == 1]

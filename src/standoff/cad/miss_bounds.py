@@ -17,7 +17,6 @@ from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.curves import Curve
 from standoff.geometry.intervals import Interval, cos, interval, sin
-from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.patch_bounds import cut
@@ -52,7 +51,7 @@ def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> f
     closed = closed_bound(pcurve, curve, surface)
     if closed is not None:
         return closed
-    if isinstance(surface, NurbsSurface) and isinstance(curve, NurbsCurve):
+    if isinstance(curve, NurbsCurve):
         proven = polynomial_bound(pcurve, curve, surface)
         if proven is not None:
             return proven

@@ -43,6 +43,10 @@ QUADRATURE: Final = 1e-9
 """Relative error asked of OpenCASCADE's integrals of area and volume: what its own adaptive rule
 reaches on curved faces in milliseconds."""
 
+SAME_KNOT: Final = 1e-9
+"""A knot that is nearer to an end of an edge than this fraction of its range is that end: files
+round parameters to about twelve digits, and a span of roundoff has no direction."""
+
 CONSTANT: Final = 1e-11
 """A parameter of a trimming curve that varies by less than this (relative to 1 + itself) along it
 is constant: the roundoff of angles, and of the file's own digits."""

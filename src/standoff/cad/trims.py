@@ -18,6 +18,7 @@ from standoff.cad.curves import (
     NoExactForm,
     approximated,
     basis_of,
+    breaks_of,
     interpolated,
     radii,
     spline_of,
@@ -112,9 +113,7 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
     if kind == "Geom2d_Line":
         start, way = coordinates(flat.Location()), coordinates(flat.Direction())
         way = linear @ way / edge.scale
-        start = on.own(start[None])[0] - way * edge.shift
-        rows = [[way[0], 0.0, start[0]], [way[1], 0.0, start[1]], [0.0, 0.0, 1.0]]
-        return Pcurve(L.LINE, np.array(rows))
+        return _line(on.own(start[None])[0] - way * edge.shift, way)
     if kind in ("Geom2d_Circle", "Geom2d_Ellipse") and edge.scale == 1.0:
         at = flat.Position()
         a, b = radii(flat, kind)
@@ -130,13 +129,27 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
             return _lowered(flat, edge, on)
         points, knots, weights = spline_of(flat, float(first), float(last))
         knots = _over(knots * edge.scale + edge.shift, edge.curve)
+        points = straightened(on.own(points))
+        if len(points) == 2 and weights is None:
+            return _straight(points, knots[0], knots[-1])
         try:
-            found = NurbsPcurve(straightened(on.own(points)), knots, weights)
+            found = NurbsPcurve(points, knots, weights)
             found.pieces(edge.curve.first, edge.curve.last)
         except StandoffError:  # a cusp, or weights far apart
             return _lowered(flat, edge, on)
         return found
     return None
+
+
+def _straight(ends: Array, first: float, last: float) -> Pcurve:
+    """The line between two places, which many files write as a spline."""
+    way = (ends[1] - ends[0]) / (last - first)
+    return _line(ends[0] - way * first, way)
+
+
+def _line(start: Array, way: Array) -> Pcurve:
+    rows = [[way[0], 0.0, start[0]], [way[1], 0.0, start[1]], [0.0, 0.0, 1.0]]
+    return Pcurve(L.LINE, np.array(rows))
 
 
 def _over(knots: Array, curve: Curve) -> Array:
@@ -151,7 +164,9 @@ def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
     def places(ts: Array) -> Array:
         return on.own(np.array([coordinates(flat.Value(float(t))) for t in edge.own(ts)]))
 
-    found, knots = approximated(places, edge.curve.first, edge.curve.last)
+    first, last = edge.own(np.array([edge.curve.first, edge.curve.last])).tolist()
+    breaks = breaks_of(flat, first, last) * edge.scale + edge.shift
+    found, knots = approximated(places, _over(breaks, edge.curve))
     return NurbsPcurve(straightened(found), knots)
 
 

@@ -271,7 +271,8 @@ class Extrusion(Swept):
 
     def jets_over(self, boxes: Boxes) -> Interval:
         u, v = boxes.sides
-        x, xu, xuu = (self.profile.jets_over(u)[:, k] for k in range(3))
+        jets = self.profile.jets_over(u)
+        x, xu, xuu = jets[:, 0], jets[:, 1], jets[:, 2]
         along = interval(self.direction[:, None])
         none = interval(np.zeros((3, len(boxes))))
         return by_generator([x + along * v, xu, along + none, xuu, none, none])

@@ -18,6 +18,10 @@ from standoff.tracking.status import Status
 Array = NDArray[np.float64]
 
 
+MOST_OPEN = 64
+"""Open pairs that an answer lists."""
+
+
 class NearestPair(NamedTuple):
     """A local minimum of the distance between two boundaries.
 

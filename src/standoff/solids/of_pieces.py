@@ -9,7 +9,14 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.solids.answer import NearestPair, Overlap, SolidCounts, SolidProximity
+from standoff.solids.answer import (
+    MOST_OPEN,
+    NearestPair,
+    OpenPair,
+    Overlap,
+    SolidCounts,
+    SolidProximity,
+)
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -114,6 +121,7 @@ def _overlapping(each: OfPieces, ball_of: BallOf) -> OfPieces:
             continuum=None,
             overlap=ball,
             inside="",
+            open=(),
             gradient_rows=np.zeros(12),
             smoothness=Smoothness.UNDEFINED,
         )
@@ -129,18 +137,23 @@ def _nearest(answers: Sequence[OfPieces], beyond: float) -> OfPieces:
     tied = [each for each in answers if each.found.distance <= most]
     nearest = next((each for each in tied if each.found.continuum), least)
     found = nearest.found
-    open_ = [
+    undecided = [
         each.found
         for each in answers
         if not each.found.certified and each.found.lower_bound < found.lower_bound
     ]
-    if open_:
-        status = min(open_, key=lambda each: each.lower_bound).status
-        found = replace(found, status=status)
+    if undecided:
+        # one that may be nearer has a lower bound below the nearest's own, which is none of these
+        left = [*found.open, *(pair for each in undecided for pair in each.open)]
+        found = replace(
+            found,
+            status=min(undecided, key=lambda each: each.lower_bound).status,
+            open=tuple(sorted(left, key=lambda pair: pair.lower_bound)[:MOST_OPEN]),
+        )
     lower = min(beyond, *(each.found.lower_bound for each in answers))
     several = len(tied) > 1 and found.smoothness is Smoothness.SMOOTH
     smoothness = Smoothness.ONE_SIDED if several else found.smoothness
-    if open_ and lower <= 0.0:
+    if undecided and lower <= 0.0:
         smoothness = Smoothness.UNDEFINED
     others = (each for each in tied if each is not nearest)
     minima = tuple(pair for each in (nearest, *others) for pair in each.found.minima)
@@ -181,6 +194,7 @@ def turned(found: SolidProximity) -> SolidProximity:
         minima=tuple(map(_turned_pair, found.minima)),
         continuum=continuum,
         inside=other[found.inside],
+        open=tuple(map(_turned_open, found.open)),
         gradient_rows=np.concatenate([found.gradient_rows[6:], found.gradient_rows[:6]]),
         poses=found.poses[::-1],
         pieces=found.pieces[::-1],
@@ -199,4 +213,10 @@ def _turned_pair(pair: NearestPair) -> NearestPair:
         pair.parameters_b,
         pair.parameters_a,
         pair.pieces[::-1],
+    )
+
+
+def _turned_open(pair: OpenPair) -> OpenPair:
+    return OpenPair(
+        pair.lower_bound, pair.feature_b, pair.feature_a, pair.corners_b, pair.corners_a
     )

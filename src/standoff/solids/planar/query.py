@@ -14,6 +14,7 @@ from standoff.kernels.entries.solids import gradient as write_gradient
 from standoff.kernels.solids import planar_search as S
 from standoff.motion import PoseLike
 from standoff.solids.answer import (
+    MOST_OPEN,
     Continuum,
     NearestPair,
     OpenPair,
@@ -34,7 +35,6 @@ Array = NDArray[np.float64]
 
 CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048
-LISTED = 64  # open pairs that an answer has
 MOST_SQUARES = 1200
 UNSEEN: Array = np.full(3, np.nan)
 
@@ -133,7 +133,7 @@ def _open(pair: Queried, searched: Searched) -> tuple[tuple[OpenPair, ...], int]
             *(NO_FEATURE, NO_FEATURE),
             *(_corners(pair, row[at : at + 8]) for at in (1, 9)),
         )
-        for row in rows[:LISTED]
+        for row in rows[:MOST_OPEN]
     )
     return listed, len(rows)
 

@@ -12,10 +12,17 @@ from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
-from standoff.solids.answer import Continuum, NearestPair, OpenPair, Overlap, SolidProximity
+from standoff.solids.answer import (
+    MOST_OPEN,
+    Continuum,
+    NearestPair,
+    OpenPair,
+    Overlap,
+    SolidProximity,
+)
 from standoff.solids.asked import DEADLINE
 from standoff.solids.parting import parted
-from standoff.solids.spatial.left_open import LISTED, around, open_pairs
+from standoff.solids.spatial.left_open import around, open_pairs
 from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.overlap import common_ball
@@ -101,7 +108,7 @@ def spatial_distance(
     )
     # two tolerances more, so that what lies beyond is proven to
     horizon = np.inf if within is None else within + 2.0 * proof
-    sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=LISTED)
+    sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=MOST_OPEN)
     found = pair.least(senses, sought)
     if found.met:
         return _meeting(pair, found, sought, senses)

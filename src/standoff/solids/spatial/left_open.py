@@ -8,27 +8,24 @@ from standoff.bodies.features import NO_FEATURE, Feature
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import part_extents
 from standoff.kernels.solids import spatial_layout as S
-from standoff.solids.answer import OpenPair
+from standoff.solids.answer import MOST_OPEN, OpenPair
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tree import CORNERS
-
-LISTED = 64
-"""Open pairs that an answer has."""
 
 
 def open_pairs(pair: PlacedPair, found: Found) -> tuple[tuple[OpenPair, ...], int]:
     """Those of a search that ended before all was closed, and how many there are; if more than are
     listed, with those that were closed by what was found later."""
     rows = found.left[found.left[:, -1] < found.upper - found.tolerance]
-    count = len(rows) if found.n_open <= LISTED else found.n_open
+    count = len(rows) if found.n_open <= MOST_OPEN else found.n_open
     return tuple(_of_row(pair, row) for row in rows), count
 
 
 def around(pair: PlacedPair, places: list[Place]) -> tuple[OpenPair, ...]:
     """The leaves of places at which boundaries meet."""
-    rows = {tuple(place.row[1:3]): place for place in places[:LISTED]}
+    rows = {tuple(place.row[1:3]): place for place in places[:MOST_OPEN]}
     found = []
     for leaf_a, leaf_b in rows:
         boxes = [s.leaves[int(k)].reals[:4] for s, k in ((pair.a, leaf_a), (pair.b, leaf_b))]
