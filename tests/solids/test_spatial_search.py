@@ -39,6 +39,11 @@ def judge(a: Solid, b: Solid, rng: np.random.Generator, poses: int) -> None:
             assert inside
             assert tree.query(centre)[0] >= radius - 1e-9
             continue
+        if answer.status is Status.WITHIN:
+            # boundaries that meet, and no ball was found inside both: nothing is claimed
+            assert answer.lower_bound == -np.inf
+            assert least <= 0.2
+            continue
         assert answer.status in (Status.CONVERGED, Status.CONTINUUM, Status.CONTAINED)
         assert answer.lower_bound <= answer.upper_bound
         assert least >= answer.lower_bound - 1e-12
