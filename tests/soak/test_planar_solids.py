@@ -9,7 +9,14 @@ import standoff as so
 from standoff.geometry import ConicArc, Line
 from standoff.solids import distance
 from standoff.solids.answer import Overlap
-from standoff_studies.soak import blocks, planar_drawn, planar_judge, planar_solids, planar_truth
+from standoff_studies.soak import (
+    blocks,
+    planar_drawn,
+    planar_judge,
+    planar_sampling,
+    planar_solids,
+    planar_truth,
+)
 from standoff_studies.soak.planar_drawn import Judged, planar_pose
 
 SEED = 3
@@ -25,12 +32,12 @@ def square(half):
 def made(segments, arcs=()):
     """A solid of one loop, or of a full circle."""
     curves = [Line(p, q) for p, q in segments]
-    rows = [planar_truth.cubic(np.array(each)) for each in segments]
+    rows = [planar_sampling.cubic(np.array(each)) for each in segments]
     for centre, radius, first, last in arcs:
         curves.append(ConicArc(centre, (radius, 0.0), (0.0, radius), first, last))
-        rows.append(planar_truth.arc(np.array(centre), radius, first, last))
+        rows.append(planar_sampling.arc(np.array(centre), radius, first, last))
     solid = so.PlanarSolid.from_loops(curves)
-    return Judged(solid, planar_truth.outline([rows], 400.0), solid.size)
+    return Judged(solid, planar_sampling.outline([rows], 400.0), solid.size)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 
 import standoff as so
 from standoff.geometry import ConicArc, Curve, Line, NurbsCurve, RationalBezier
-from standoff_studies.soak import planar_truth
+from standoff_studies.soak import planar_sampling, planar_truth
 from standoff_studies.soak.planar_truth import Array, Outline
 
 Rng = np.random.Generator
@@ -58,7 +58,7 @@ def drawn_curve(rng: Rng, p: Array, q: Array) -> Drawn:
     """A curve of any kind from p to q, or back, and its rows."""
     kind = rng.integers(4)
     if kind == 0:
-        return Line(p, q), [planar_truth.cubic(np.array([p, q]))]
+        return Line(p, q), [planar_sampling.cubic(np.array([p, q]))]
     side = np.array([p[1] - q[1], q[0] - p[0]])
     if kind == 1:
         # an arc through both, its centre beyond either side
@@ -70,16 +70,16 @@ def drawn_curve(rng: Rng, p: Array, q: Array) -> Drawn:
             first, last = last, first
         turn = (last - first) % (2.0 * np.pi)
         curve = ConicArc(centre, (r, 0.0), (0.0, r), first, first + turn)
-        return curve, [planar_truth.arc(centre, r, first, first + turn)]
+        return curve, [planar_sampling.arc(centre, r, first, first + turn)]
     inner = [p + u * (q - p) + rng.uniform(-0.08, 0.08) * side for u in (0.33, 0.66)]
     points = np.array([p, *inner, q])
     if kind == 2:
         weights = rng.uniform(0.7, 1.4, 4)
-        return RationalBezier(points, weights), [planar_truth.cubic(points, weights)]
+        return RationalBezier(points, weights), [planar_sampling.cubic(points, weights)]
     knot = 0.5 * (points[1] + points[2])
     halves = [points[0], points[1], knot], [knot, points[2], points[3]]
     spline = NurbsCurve(points, [0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0])
-    return spline, [planar_truth.cubic(np.array(half)) for half in halves]
+    return spline, [planar_sampling.cubic(np.array(half)) for half in halves]
 
 
 def judged(rng: Rng) -> Judged:
@@ -97,7 +97,7 @@ def judged(rng: Rng) -> Judged:
         except so.BodyError:
             continue
     rows = [[row for _, rows in loop for row in rows] for loop in loops]
-    return Judged(solid, planar_truth.outline(rows, PER_LENGTH / scale), solid.size)
+    return Judged(solid, planar_sampling.outline(rows, PER_LENGTH / scale), solid.size)
 
 
 def planar_pose(x: float, y: float, angle: float) -> so.Pose:
