@@ -50,7 +50,7 @@ def outline(loops: list[list[Array]], per_length: float) -> Outline:
     bounds = [(k, min(k + RUN, e)) for b, e in pairwise(parted)
               for k in range(b, e, RUN)]  # fmt: skip
     runs = np.array(bounds, dtype=np.int64)
-    ends = np.where(np.isin(runs[:, 1], begins), runs[:, 1] - 1, runs[:, 1])
+    beyond = np.where(np.isin(runs[:, 1], begins), runs[:, 1] - 1, runs[:, 1])
     middles = runs.sum(axis=1) // 2
     radii = np.array([np.linalg.norm(samples[i:j] - samples[m], axis=1).max()
                       for (i, j), m in zip(runs, middles, strict=True)])  # fmt: skip
@@ -66,4 +66,4 @@ def outline(loops: list[list[Array]], per_length: float) -> Outline:
     steps[loops_at[1:-1] - 1] = 0.0  # from loop to loop
     # half of the greatest step, and half of that more for what lies between
     reach = 0.75 * float(steps.max())
-    return Outline(pieces, samples, joined, twins, loops_at, runs, ends, middles, radii, reach)
+    return Outline(pieces, samples, joined, twins, loops_at, runs, beyond, middles, radii, reach)
