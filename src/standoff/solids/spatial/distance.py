@@ -25,7 +25,7 @@ from standoff.solids.parting import parted
 from standoff.solids.spatial.left_open import around, open_pairs
 from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
-from standoff.solids.spatial.overlap import common_ball
+from standoff.solids.spatial.overlap import ball_beside, common_ball
 from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, within_box
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid_model import SolidModel, as_model
@@ -37,6 +37,9 @@ from standoff.tracking.status import Status
 
 # Reference points that are tried until one is off the other's boundary.
 TRIED = 6
+# Common points of the boundaries beside which a point inside both is sought, where nothing parts
+# the solids.
+MOST_COMMON = 8
 # Starts of the ascent to the largest common ball.
 STARTS = 3
 MOST_TIES = 64
@@ -226,13 +229,17 @@ def _meeting(
 def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
     """No ball was found inside both: all places of contact, and whether they can be parted."""
     # local minima below the tolerance, so that nothing is to be closed
-    found = _contacts(
-        pair, pair.least(senses, sought._replace(above=0.5 * sought.tolerance)), senses
-    )
+    common = pair.least(senses, sought._replace(above=0.5 * sought.tolerance))
+    found = _contacts(pair, common, senses)
     near = _places(pair, found, senses, 0.0)
     continuum = continuum_of(pair, near, found, senses)
     normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])
     way = parted(normals, found.tolerance, lambda by: _is_apart(pair.moved(by)))
+    if way == np.inf:
+        spots = [0.5 * (each.point_a + each.point_b) for each in _places(pair, common, senses, 0.0)]
+        overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance)
+        if overlap:
+            return _answer(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
     places = near
     if sought.above > 0.0:
         others = _places(pair, pair.least(senses, sought), senses, sought.above)

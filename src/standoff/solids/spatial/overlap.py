@@ -27,9 +27,17 @@ def common_ball(pair: PlacedPair, starts: Array, least: float) -> Overlap | None
         depth, point = _climbed(pair, start, FIRST_STEP)
         if depth > best:
             best, where = depth, point
-    if best <= least:
-        best, where = _beside(pair, starts[0], least)
-    return Overlap(where, best) if best > least else None
+    return Overlap(where, best) if best > least else ball_beside(pair, starts[:1], least)
+
+
+def ball_beside(pair: PlacedPair, starts: Array, least: float) -> Overlap | None:
+    """The same from the first point inside both that is found beside common points of the
+    boundaries."""
+    for start in starts:
+        depth, point = _beside(pair, start, least)
+        if depth > least:
+            return Overlap(point, depth)
+    return None
 
 
 def _beside(pair: PlacedPair, start: Array, least: float) -> tuple[float, Array]:
