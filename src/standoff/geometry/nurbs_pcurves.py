@@ -13,7 +13,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.tolerances import BEND_ROUNDOFF, INFLECTION, STRAIGHT_PCURVE
+from standoff.geometry.tolerances import INFLECTION, PCURVE_ROUNDOFF, STRAIGHT_PCURVE
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet, pcurve_jets
@@ -161,7 +161,7 @@ def _bend_roundoff(piece: BezierPcurve, rows: Array) -> Array:
     first = degree / width * float(np.abs(piece.matrix).max())
     second = degree / width * first
     h, ht, htt = np.linalg.norm(rows, axis=2).T
-    return np.asarray(BEND_ROUNDOFF * h * (ht * second + first * htt))
+    return np.asarray(PCURVE_ROUNDOFF * h * (ht * second + first * htt))
 
 
 def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:

@@ -89,7 +89,7 @@ STRAIGHT_PCURVE: Final = 1e-11
 """Curvature below this fraction of the greatest (dimensionless) is the roundoff of a straight
 piece."""
 
-BEND_ROUNDOFF: Final = 64.0 * float(np.finfo(np.float64).eps)
+PCURVE_ROUNDOFF: Final = 64.0 * float(np.finfo(np.float64).eps)
 """Derivatives of a trimming curve are rounded by this fraction of what control points of its size
 allow: sums of ten products, and the conversion from a spline's spans."""
 
