@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import comb
 
 from standoff.cad.tolerances import FITTED_TRIM
@@ -53,7 +54,9 @@ def lowered(points: Array, weights: Array | None, knots_u: Array, knots_v: Array
     return h[..., :3] / h[..., 3:], None if polynomial else h[..., 3], knots[0], knots[1], moved
 
 
-def _lowered(net: Array, vector: KnotVector, parts: Array) -> tuple[Array, Array, Array]:
+def _lowered(
+    net: Array, vector: KnotVector, parts: NDArray[np.int64]
+) -> tuple[Array, Array, Array]:
     """(net, knots, off) along the first axis, each span in so many parts; off: of each span, the
     greatest differences of the components of homogeneous coefficients, (spans, 4)."""
     nodes = 0.5 - 0.5 * np.cos(np.pi * np.arange(LOWER + 1) / LOWER)

@@ -78,7 +78,7 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
             if key in table:
                 raise table.error("is for CAD files: a file of Standoff's own has one part", key)
         return table.build(lambda: _kept(path), "body")
-    from standoff.cad.reading import ENDINGS
+    from standoff.cad.files import ENDINGS
 
     if ending not in ENDINGS:
         known = ", ".join((*ENDINGS, KEPT))
