@@ -131,11 +131,12 @@ def _placed(
         return low, high, unknown
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
     low, high = pcurve_box(kind, matrix, *part)
-    plain = bool((matrix[2, :2] == 0.0).all())
+    if (matrix[2, :2] != 0.0).any():
+        return low, high, unknown
     if kind == L.LINE:
-        return low, high, np.zeros(2) if plain else unknown
+        return low, high, np.zeros(2)
     bend = np.hypot(matrix[:2, 0], matrix[:2, 1]) / abs(float(matrix[2, 2]))
-    return low, high, bend * (1.0 + BEND_SPARE) if plain else unknown
+    return low, high, bend * (1.0 + BEND_SPARE)
 
 
 def edge_ranges(curve: Curve, arc: float, longest: float) -> list[tuple[float, float]]:
