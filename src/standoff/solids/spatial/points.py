@@ -14,7 +14,7 @@ from standoff.kernels.solids.torus_potential import CENTRE_OF
 from standoff.solids.spatial.minimum import EITHER, IDENTITY, Found, leaf_jet_of, least_distance
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import ALONG_NORMAL, BESIDE_EDGE, SAME_SPOT
+from standoff.solids.spatial.tolerances import ACROSS_EDGE, ALONG_NORMAL, BESIDE_EDGE, SAME_SPOT
 
 MOST_PLACES = 16
 """Nearest places that are asked for the side of a point, before a ray is."""
@@ -96,7 +96,7 @@ def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
         away = point - at
         length = float(np.linalg.norm(away))
         on_it = found.met or length <= found.tolerance
-        sign = 1.0 if on_it else _side(solid, found, point)
+        sign = 1.0 if on_it else side_of(solid, found, point)
         least = 0.0 if on_it else found.lower
         distance[k] = sign * found.upper
         bounds = sign * np.array([least, found.upper])
@@ -115,19 +115,25 @@ def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
     return PointDistances(distance, low, high, gradient, nearest, converged, smooth)
 
 
-def _side(solid: SolidModel, found: Found, point: Array) -> float:
+def side_of(solid: SolidModel, found: Found, point: Array) -> float:
     """+1 for a point outside, -1 inside, by the nearest places of the boundary.
 
     A nearest place on a side of a face may be found as one of that face, whose plane may hold the
     point: so only a place decides from which the point is along the normal, or clearly on one side
-    of an edge's or a vertex's normals. A ray decides where none does.
+    of an edge's or a vertex's normals. At an edge's end the point may be off across it, and the
+    vertex decides. A ray decides where none does.
     """
     for row in (found.best, *found.minima[:MOST_PLACES]):
         leaf, u, v = int(row[2]), float(row[5]), float(row[6])
         direction = outside_direction(solid, leaf, u, v)
         if direction is None:
             continue
-        away = point - leaf_jet_of(solid.packed, leaf, u, v)[0]
+        at, tangent, *_ = leaf_jet_of(solid.packed, leaf, u, v)
+        away = point - at
+        if solid.leaves[leaf].dim == 1:
+            across = float(np.linalg.norm(away)) * float(np.linalg.norm(tangent))
+            if abs(float(away @ tangent)) > ACROSS_EDGE * across:
+                continue
         size = float(np.linalg.norm(away)) * float(np.linalg.norm(direction))
         along = float(direction @ away) / size if size > 0.0 else 0.0
         if abs(along) >= (ALONG_NORMAL if solid.leaves[leaf].dim == 2 else BESIDE_EDGE):

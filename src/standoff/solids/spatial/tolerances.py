@@ -63,6 +63,9 @@ BEND_SPARE: Final = 1e-12
 ALONG_NORMAL: Final = 1.0 - 1e-6
 """Cosine: a point is along a face's normal, so that the face says on which side it is. At a place
 within a face it is 1. At a sharp edge one face's normal is nearly against the other's."""
+ACROSS_EDGE: Final = 1e-5
+"""Cosine to an edge's tangent up to which a point's nearest place is along the edge, not at its
+end."""
 BESIDE_EDGE: Final = 1e-2
 """Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
 is; less is told by a ray."""
