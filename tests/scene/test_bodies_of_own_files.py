@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import standoff as so
-from solids.spatial_shapes import tube
+from families.solid_shapes import tube
 from standoff.cli.entry import main
 from standoff.robots.obstacles import read_obstacles
 from standoff.scene import Scene, SceneError, load_scene, query

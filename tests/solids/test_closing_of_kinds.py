@@ -4,9 +4,9 @@ what is true, and nothing that is false."""
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from spatial_shapes import bolt, bracket, peg, ring, tube
 from test_spatial_search import negative_tolerance
 
+from families.solid_shapes import bolt, bracket, peg, ring, tube
 from standoff.solids import Solid
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from spatial_shapes import ball, bolt, bracket, prism
 
+from families.solid_shapes import ball, bolt, bracket, prism
 from standoff.bodies import EdgeKind
 from standoff.bodies.face_leaves import face_charts
 from standoff.kernels.solids import spatial_layout as S

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from spatial_shapes import prism
 
+from families.solid_shapes import prism
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.points import distance_to_boundary, side_of
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 from matplotlib.patches import Circle, Polygon
-from spatial_shapes import ball, bolt, bracket, peg, prism, tube
 
 import standoff as so
+from families.solid_shapes import ball, bolt, bracket, peg, prism, tube
 from standoff.solids import distance
 from standoff.solids.drawing.camera import camera_on, rastered, visible
 from standoff.solids.drawing.skin import EDGE_LOOKS, raster_of, skin_of

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from spatial_shapes import ball, bolt, peg, prism, tube, x, y, z
 
 import standoff as so
+from families.solid_shapes import ball, bolt, peg, prism, tube, x, y, z
 from standoff.bodies import Edge, Face
 from standoff.geometry import ConicArc, Line, Plane
 from standoff.kernels.body import layout as L

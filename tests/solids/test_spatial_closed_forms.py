@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from spatial_shapes import BRACKET, ball, bolt, bracket, peg, ring, socket, tube
 
+from families.solid_shapes import BRACKET, ball, bolt, bracket, peg, ring, socket, tube
 from standoff.solids import Solid
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.derivatives import Smoothness

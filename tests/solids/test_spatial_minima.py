@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
-from spatial_shapes import ball, bolt, bracket, peg, prism, samples, tube
 
 import standoff as so
+from families.solid_shapes import ball, bolt, bracket, peg, prism, samples, tube
 from standoff.solids import SolidProximity, distance
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status

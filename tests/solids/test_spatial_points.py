@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from spatial_shapes import BRACKET, ball, bolt, bracket, ring
+
+from families.solid_shapes import BRACKET, ball, bolt, bracket, ring
 
 PROFILE = np.array([[0, 0], [1, 0], [1, 3], [2, 3], [2, 4], [0, 4]], dtype=float)
 

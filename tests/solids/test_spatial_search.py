@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
-from spatial_shapes import ball, bolt, bracket, egg, ring, samples, tube
 
+from families.solid_shapes import ball, bolt, bracket, egg, ring, samples, tube
 from standoff.kernels.solids import spatial_progress as C
 from standoff.solids import Solid
 from standoff.solids.spatial import minimum

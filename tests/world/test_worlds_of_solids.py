@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from solids.spatial_shapes import ball, peg, socket, tube
+from families.solid_shapes import ball, peg, socket, tube
 from standoff.geometry import ConicArc, Line
 from standoff.solids import OpenPair, Overlap, PlanarSolid, SolidProximity
 from standoff.solids.of_pieces import OfPieces, answer_of_pieces, turned
