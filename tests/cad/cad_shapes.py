@@ -130,6 +130,17 @@ def drilled_tube() -> Any:
     return cut(cylinder((0, 0, 0), 12, 40), hole)
 
 
+def cut_off() -> Any:
+    """A cylinder of radius 10 about z, cut off by a plane through (0, 0, 10) along (1, 0, 0.6)."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+    from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf
+
+    turn = gp_Trsf()
+    turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 10), gp_Dir(0, -1, 0)), float(np.arctan(0.6)))
+    above = BRepBuilderAPI_Transform(box(80, 80, 80, (-40, -40, 10)), turn, True).Shape()
+    return cut(cylinder((0, 0, 0), 10, 30), above)
+
+
 def hollow() -> Any:
     """A box with a ball-shaped cavity."""
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere

@@ -34,3 +34,27 @@ def bezier_box(points: Array) -> tuple[Array, Array]:
     places = points[:, :2] / points[:, 2:]
     margin = BOX_MARGIN * np.abs(places).max(axis=0)
     return places.min(axis=0) - margin, places.max(axis=0) + margin
+
+
+def bezier_bend(points: Array) -> Array:
+    """(2,) bounds of |u''| and |v''| over the parameter in [0, 1], of a rational Bezier curve's
+    points (n, 3), homogeneous (w u, w v, w).
+
+    With c = h / w moved so that its middle is 0, c' = (h' - c w') / w and
+    c'' = (h'' - 2 c' w' - c w'') / w; nets bound each.
+    """
+    w = points[:, 2]
+    places = points[:, :2] / w[:, None]
+    middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
+    degree = len(points) - 1
+    moved = points[:, :2] - w[:, None] * middle
+    slopes, bends = degree * np.diff(moved, axis=0), np.zeros((1, 2))
+    w_slope, w_bend = degree * np.diff(w), np.zeros(1)
+    if degree > 1:
+        bends = (degree - 1) * np.diff(slopes, axis=0)
+        w_bend = (degree - 1) * np.diff(w_slope)
+    least = float(w.min())
+    away = np.abs(places - middle).max(axis=0)
+    first = (np.abs(slopes).max(axis=0) + away * np.abs(w_slope).max()) / least
+    second = np.abs(bends).max(axis=0) + 2.0 * first * np.abs(w_slope).max()
+    return np.asarray((second + away * np.abs(w_bend).max()) / least)

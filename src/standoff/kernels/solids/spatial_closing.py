@@ -1,5 +1,7 @@
 """Closing a pair of leaves: no two of their points on the solids are nearer than a bound."""
 
+from math import inf
+
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
@@ -50,6 +52,7 @@ from standoff.kernels.solids.spatial_tolerances import (
     SURE_NORMAL,
 )
 from standoff.kernels.solids.torus_potential import potential_jet
+from standoff.kernels.solids.trim_witness import nearest_on_trim
 
 # Pairs of boxes that wait, of 9 numbers each.
 PAIR_REALS = 9
@@ -228,9 +231,27 @@ def closed_by_any(a, b, best, minima, counts):
     # a nearer place off a trim is cut away sooner than bounded
     if not closed and distance >= goal:
         closed = closed_to(goal, row, pair, MOST_BOXES, best, minima, counts)
+    elif not closed:
+        closed = closed_off_trim(goal, a, b, best, counts)
     if closed:
         best[OF_LEAVES] = min(best[OF_LEAVES], goal - best[ROUNDING])
     return closed
+
+
+@kernel
+def closed_off_trim(goal, a, b, best, counts):
+    """Do potentials prove a goal of two parts that are nearer off their trims, through the nearest
+    points on the trimming curves of one?"""
+    q, distance = nearest_on_trim(a, b, counts)
+    if goal <= distance < inf and by_witness(
+        goal, a, b, (a.leaf, b.leaf, q), FEW_BOXES, best, counts
+    ):
+        return True
+    q, distance = nearest_on_trim(b, a, counts)
+    if not goal <= distance < inf:
+        return False
+    at = (a.leaf, b.leaf, (q[2], q[3], q[0], q[1]))
+    return by_witness(goal, a, b, at, FEW_BOXES, best, counts)
 
 
 @kernel

@@ -12,13 +12,18 @@ from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BUDGET,
     LEAF_PAIRS,
+    LEAST,
     MET,
+    MOST_OPEN,
     N_MINIMA,
+    N_OPEN,
     NODE_PAIRS,
     NOWHERE,
     OF_LEAVES,
+    OPEN,
     ROUNDING,
     SIZE,
+    TOLERANCE,
     bound_minima,
     evaluations,
     farthest,
@@ -27,6 +32,8 @@ from standoff.kernels.solids.spatial_progress import (
     leave_open,
 )
 
+# Share of the evaluations from which on a search is hard: all pairs are closed loosely first.
+LOOSE_FROM = 0.25
 # Boxes that a pair with a plane is looked at with: when it is met, and when it is closed.
 MOST_VISITED, MOST_CLOSING = 12, 100
 
@@ -78,18 +85,47 @@ def search(a, b, best, minima, heap, room, counts):
         else:
             count = offer(a, i, b, b.own[rb], best, heap, count, counts)
             count = offer(a, i, b, b.own[rb + 1], best, heap, count, counts)
+    loose = False
     for k in range(left):
-        leaf_a, leaf_b, low = int(pairs[3 * k]), int(pairs[3 * k + 1]), pairs[3 * k + 2]
+        leaf_a, leaf_b = int(pairs[3 * k]), int(pairs[3 * k + 1])
+        if not loose and evaluations(counts) > LOOSE_FROM * best[BUDGET]:
+            loose = True
+            close_loosely(a, b, k, left, best, minima, room, counts)
+        low = pairs[3 * k + 2]
         if low < goal_of(best) and best[MET] == 0.0:
-            counts[LEAF_PAIRS] += 1
-            best[OF_LEAVES] = goal_of(best) - best[ROUNDING]
-            pa = S.Part(a, leaf_a, leaf_box(a, leaf_a))
-            pb = S.Part(b, leaf_b, leaf_box(b, leaf_b))
-            if not left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
-                close_leaves(a, b, (leaf_a, leaf_b, low), best, minima, work, counts)
-            low = best[OF_LEAVES]
+            low = closed_pair(a, b, (leaf_a, leaf_b, low), best, minima, work, counts)
         if best[ABOVE] > 0.0:
             bound_minima(best, minima, leaf_a, leaf_b, low)
+
+
+@kernel
+def closed_pair(a, b, pair, best, minima, work, counts):
+    """The proven bound of a pair of leaves, which is closed as far as it can be."""
+    counts[LEAF_PAIRS] += 1
+    best[OF_LEAVES] = goal_of(best) - best[ROUNDING]
+    pa = S.Part(a, pair[0], leaf_box(a, pair[0]))
+    pb = S.Part(b, pair[1], leaf_box(b, pair[1]))
+    if not left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
+        close_leaves(a, b, pair, best, minima, work, counts)
+    return best[OF_LEAVES]
+
+
+@kernel
+def close_loosely(a, b, first, left, best, minima, room, counts):
+    """Of a hard search, prove of all pairs of leaves from `first` on that they are half of the
+    least distance apart: an end of the evaluations then leaves that much of a bound."""
+    pairs, _, work = room
+    if best[ABOVE] > 0.0:
+        return
+    tolerance, open_, n_open, listed = best[TOLERANCE], best[OPEN], best[N_OPEN], best[MOST_OPEN]
+    best[MOST_OPEN] = 0.0
+    for k in range(first, left):
+        best[TOLERANCE] = max(0.5 * best[LEAST], tolerance)
+        if pairs[3 * k + 2] < goal_of(best) and best[MET] == 0.0:
+            pair = (int(pairs[3 * k]), int(pairs[3 * k + 1]), pairs[3 * k + 2])
+            low = closed_pair(a, b, pair, best, minima, work, counts)
+            pairs[3 * k + 2] = max(pair[2], low)
+    best[TOLERANCE], best[OPEN], best[N_OPEN], best[MOST_OPEN] = tolerance, open_, n_open, listed
 
 
 @kernel

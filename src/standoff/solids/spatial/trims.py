@@ -12,7 +12,7 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import chart_row
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line
-from standoff.geometry.pcurve_boxes import bezier_box, pcurve_box
+from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_box
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
@@ -20,7 +20,9 @@ from standoff.solids.spatial.derivative_bounds import curve_derivatives
 from standoff.solids.spatial.tolerances import BEND_SPARE, TURN_SPARE
 
 # Parts of a trimming curve by its kind.
-PARTS = {L.LINE: 1, L.CONIC: 8, L.BEZIER: 16}
+PARTS = {L.LINE: 1, L.CONIC: 8, L.BEZIER: 4}
+# How often a span of an edge is halved for its leaves, at most, and where nothing is known of it.
+MOST_HALVINGS, BLIND_HALVINGS = 5, 3
 
 
 @dataclass(frozen=True)
@@ -127,8 +129,10 @@ def _placed(
         count = 3 * (int(boundary.reals[at]) + 1)
         points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
         a, b = ((t - whole[0]) / (whole[1] - whole[0]) for t in part)
-        low, high = bezier_box(segment(len(points) - 1, a, b) @ points)
-        return low, high, unknown
+        own = segment(len(points) - 1, a, b) @ points
+        low, high = bezier_box(own)
+        bend = bezier_bend(own) / (part[1] - part[0]) ** 2
+        return low, high, bend * (1.0 + BEND_SPARE)
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
     low, high = pcurve_box(kind, matrix, *part)
     if (matrix[2, :2] != 0.0).any():
@@ -140,16 +144,44 @@ def _placed(
 
 
 def edge_ranges(curve: Curve, arc: float, longest: float) -> list[tuple[float, float]]:
-    """An edge's parameter in ranges for leaves."""
+    """An edge's parameter in ranges for leaves, each of which turns by no more than `arc`, radians,
+    and is no longer than `longest`."""
+    spans = list(pairwise(curve.spans().tolist()))
+    if not isinstance(curve, Line | ConicArc):
+        return _halved(curve, spans, arc, longest)
     found = []
-    for a, b in pairwise(curve.spans().tolist()):
+    for a, b in spans:
         if isinstance(curve, ConicArc):
             parts = int(np.ceil((b - a) / arc))
-        elif isinstance(curve, Line):
+        else:
             reach = float(np.linalg.norm(curve.point(b) - curve.point(a)))
             parts = int(np.ceil(reach / longest))
-        else:
-            parts = 8
         steps = np.linspace(a, b, max(parts, 1) + 1)
         found += list(pairwise(steps.tolist()))
     return found
+
+
+def _halved(
+    curve: Curve, spans: list[tuple[float, float]], arc: float, longest: float
+) -> list[tuple[float, float]]:
+    """Spans halved until each turns little; `BLIND_HALVINGS` times where no bounds are known."""
+    found: list[tuple[float, float]] = []
+    waiting = spans
+    for depth in range(MOST_HALVINGS + 1):
+        again: list[tuple[float, float]] = []
+        for (a, b), d in zip(waiting, curve_derivatives(curve, waiting), strict=True):
+            known = bool(np.isfinite(d[:2]).all())
+            if known:
+                speed = float(np.linalg.norm(curve.jet(0.5 * (a + b))[1]))
+                done = d[1] * (b - a) <= arc * speed and d[0] * (b - a) <= longest
+            else:
+                done = depth == BLIND_HALVINGS
+            if done or depth == MOST_HALVINGS:
+                found.append((a, b))
+            else:
+                middle = 0.5 * (a + b)
+                again += [(a, middle), (middle, b)]
+        if not again:
+            break
+        waiting = again
+    return sorted(found)
