@@ -3,6 +3,8 @@ form."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,10 @@ from standoff.kernels.solids import spatial_heights
 from standoff.kernels.solids import spatial_layout as S
 from standoff.solids import OpenPair, Solid, distance
 from standoff.solids.of_pieces import turned
+from standoff.solids.spatial import distance as spatial_distance_module
+from standoff.solids.spatial.minimum import Sought
+from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.solid_model import as_model
 from standoff.tracking.status import Status
 
 STILL = so.Pose.identity()
@@ -34,6 +40,24 @@ def test_what_cannot_be_moved_away_is_not_said_to_touch() -> None:
     loose = ball(1.0 - 1e3 * tolerance)
     at = so.Pose(STRAIGHT, (1.0 - 1e3 * tolerance, 1.5, 1.5))
     assert distance(SLOT, loose, STILL, at).status is Status.TOUCHING
+
+
+def test_the_distance_of_a_contact_is_that_of_its_own_points(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Boundaries that cross elsewhere are nearer there than where they touch."""
+    pair = PlacedPair(
+        as_model(SLOT), as_model(ball(0.5)), STILL, so.Pose(STRAIGHT, (1.0, 0.5, 1.5))
+    )
+    found = pair.least((S.OUTSIDE, S.OUTSIDE), Sought(1e-9, on_meeting=False))
+    crossing, touching = found.best.copy(), found.best.copy()
+    crossing[0], touching[0] = 0.0, 8e-11
+    found = replace(found, upper=0.0, minima=np.array([crossing, touching]), best=crossing)
+    monkeypatch.setattr(
+        spatial_distance_module, "is_stationary", lambda pair, place, most: place.distance > 0.0
+    )
+    told = spatial_distance_module._contacts(pair, found, (S.OUTSIDE, S.OUTSIDE))
+    assert told.upper == told.best[0] == 8e-11
 
 
 def brick(off: float) -> Solid:

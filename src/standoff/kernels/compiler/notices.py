@@ -43,7 +43,7 @@ WORK = {
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 7, 45, 3),
     "world": Work("worlds of many bodies", 5, 45, 10),
-    "solids": Work("solids in space", 15, 20, 5),
+    "solids": Work("solids in space", 15, 20, 6),
     "planar": Work("planar solids", 15, 20, 4),
 }
 

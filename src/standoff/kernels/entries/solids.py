@@ -6,6 +6,7 @@ from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import BOOL, INT, INTS, READ, WRITE, WRITE_INTS
 from standoff.kernels.pair.derivatives import write_gradient
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.local_side import on_one_side, tell_beside
 from standoff.kernels.solids.spatial_closing import along
 from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid
@@ -84,6 +85,23 @@ def part_extents(solid, axes, leaf, box, out):
         out[k] = jet[0][k]
         n = (axes[3 * k], axes[3 * k + 1], axes[3 * k + 2])
         out[3 + k] = along(side, leaf, jet, n, h)
+
+
+@entry(SOLIDS, READ, INTS, INTS, READ, WRITE, WRITE, WRITE_INTS, work="solids")
+def local_side(solids, pose, numbers, leaves, at, best, work, counts):
+    """Into best[0] whether `on_one_side` holds, and into best[1:9] what `tell_beside` tells.
+    numbers: B's leaf and the one of A whose potential is asked; at: the box of B's part, and both
+    limits; leaves: those of A that are near."""
+    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+    a, b = side_at(solids[0], still, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    part = S.Part(b, numbers[0], S.Box(at[0], at[1], at[2], at[3]))
+    told = pointer(best, 0)
+    limits = (at[4], at[5])
+    held = on_one_side(
+        a, part, numbers[1], leaves, limits, told, pointer(work, 0), pointer(counts, 0)
+    )
+    told[0] = 1.0 if held else 0.0
+    tell_beside(a, part, numbers[1], at[5], told)
 
 
 @entry(READ, BOOL, WRITE, work="solids")

@@ -30,3 +30,14 @@ def quadratic_max(g, H, e):
         if e[0] < eu < e[1] and e[2] < ev < e[3]:
             best = max(best, 0.5 * (gu * eu + gv * ev))
     return best
+
+
+@kernel
+def widened(second, thirds, spread, mu, mv):
+    """Second derivatives that bound F with its remainder for |e_u| <= mu, |e_v| <= mv."""
+    a, b, c = second
+    return (
+        a + (thirds[0] * mu + 3.0 * thirds[1] * mv) / 3.0 + spread[0] + spread[1],
+        b,
+        c + (3.0 * thirds[2] * mu + thirds[3] * mv) / 3.0 + spread[2] + spread[1],
+    )

@@ -1,9 +1,9 @@
 """The greatest value of a potential over a piece of a solid, bounded by Taylor's formula."""
 
-from math import cos, inf, sin
+from math import inf
 
 from standoff.kernels.algebra.roots import sqrt
-from standoff.kernels.algebra.vectors import axpy, cross, dot, norm, rotate, scale, sub
+from standoff.kernels.algebra.vectors import cross, dot, norm, rotate
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
@@ -15,7 +15,8 @@ from standoff.kernels.body.features import (
 from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.quadratic_max import line_max, quadratic_max
+from standoff.kernels.solids.quadratic_max import line_max, quadratic_max, widened
+from standoff.kernels.solids.round_axis import arc_data, axis_data, round_axis_greatest
 from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_likeness import (
     OVER_SINE,
@@ -27,7 +28,6 @@ from standoff.kernels.solids.spatial_likeness import (
 from standoff.kernels.solids.spatial_pieces import (
     CUT_BY_TRIM,
     OUTSIDE_TRIM,
-    ZERO,
     leaf_ints,
     leaf_jet,
     leaf_reals,
@@ -78,17 +78,6 @@ def third_bounds(m, o, derivatives):
         d3 * lu * lu * lv + d2 * (2.0 * lu * uv + uu * lv) + d1 * m[t + 1],
         d3 * lu * lv * lv + d2 * (2.0 * lv * uv + vv * lu) + d1 * m[t + 2],
         d3 * lv * lv * lv + 3.0 * d2 * lv * vv + d1 * m[t + 3],
-    )
-
-
-@kernel
-def widened(second, thirds, spread, mu, mv):
-    """Second derivatives that bound F with its remainder for |e_u| <= mu, |e_v| <= mv."""
-    a, b, c = second
-    return (
-        a + (thirds[0] * mu + 3.0 * thirds[1] * mv) / 3.0 + spread[0] + spread[1],
-        b,
-        c + (3.0 * thirds[2] * mu + thirds[3] * mv) / 3.0 + spread[2] + spread[1],
     )
 
 
@@ -191,67 +180,6 @@ def greatest(phi, sign, side, leaf, box, u, v):
 
 
 @kernel
-def axis_data(side, leaf):
-    """(known, c, E1, E2, b): a cylinder or an arc as c + E1 cos u + E2 sin u + v b, in A's frame,
-    E1 and E2 of one length and normal to each other and to b."""
-    r = leaf_ints(side, leaf)
-    dim = side.own[r + S.DIM]
-    o = -1
-    straight = 0.0
-    if dim == 2 and side.own[r + S.NATURAL] == AXIS_OF:
-        c = chart_record(side.ints, side.own[r + S.CHART])
-        o, straight = side.ints[c + L.CHART_REALS], 1.0
-    elif dim == 1 and side.own[r + S.NATURAL] == S.ROUND_ARC:
-        e = edge_record(side.ints, side.own[r + S.FEATURE])
-        o = side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
-    if o < 0:
-        return False, ZERO, ZERO, ZERO, ZERO
-    m, R, p = side.reals, side.pose.R, side.pose.p
-    c = rotate(R, (m[o + 9], m[o + 10], m[o + 11]))
-    c = (c[0] + p[0], c[1] + p[1], c[2] + p[2])
-    first = rotate(R, (m[o], m[o + 3], m[o + 6]))
-    other = rotate(R, (m[o + 1], m[o + 4], m[o + 7]))
-    along = scale(straight, rotate(R, (m[o + 2], m[o + 5], m[o + 8])))
-    return True, c, first, other, along
-
-
-@kernel
-def round_axis_greatest(phi, sign, data, box, u, v):
-    """The same bound for the distance from an axis over a cylinder or an arc, which stays sharp
-    where both nearly share their axis: only the small quantities are expanded."""
-    _, centre, first, other, along = data
-    a = phi.n
-    offset = sub(centre, phi.o)
-    offset = axpy(-dot(a, offset), a, offset)
-    lean = axpy(-dot(a, along), a, along)
-    p, q = dot(a, first), dot(a, other)
-    r2 = dot(first, first)
-    cu, su = cos(u), sin(u)
-    E, Eu = axpy(cu, first, scale(su, other)), axpy(-su, first, scale(cu, other))
-    tilt, tilt_u = p * cu + q * su, q * cu - p * su
-    both = axpy(2.0 * v, lean, scale(2.0, offset))
-    # |offset + v lean + E|² - |E|², less what is along the axis
-    eta = dot(offset, offset) + 2.0 * v * dot(offset, lean) + v * v * dot(lean, lean)
-    eta += dot(both, E) - tilt * tilt
-    gu = dot(both, Eu) - 2.0 * tilt * tilt_u
-    gv = 2.0 * dot(offset, lean) + 2.0 * v * dot(lean, lean) + 2.0 * dot(lean, E)
-    huu = -dot(both, E) - 2.0 * (tilt_u * tilt_u - tilt * tilt)
-    huv = 2.0 * dot(lean, Eu)
-    hvv = 2.0 * dot(lean, lean)
-    mu, mv = max(box.u1 - u, u - box.u0), max(box.v1 - v, v - box.v0)
-    r = sqrt(r2)
-    far = norm(both) + 2.0 * norm(lean) * mv
-    thirds = (far * r + 8.0 * (p * p + q * q), 2.0 * norm(lean) * r, 0.0, 0.0)
-    s = sign * phi.sign
-    wide = widened((s * huu, s * huv, s * hvv), thirds, (0.0, 0.0, 0.0), mu, mv)
-    e = (box.u0 - u, box.u1 - u, box.v0 - v, box.v1 - v)
-    most = eta + s * quadratic_max((s * gu, s * gv), wide, e)
-    if r2 + most <= 0.0:
-        return inf
-    return s * ((r - phi.k1) + most / (sqrt(r2 + most) + r))
-
-
-@kernel
 def along_trim(phi, sign, most, side, leaf, box):
     """Is sign phi proven to be at most `most` on all trimming curves in a box?"""
     r = leaf_ints(side, leaf)
@@ -283,6 +211,11 @@ def along_trim(phi, sign, most, side, leaf, box):
                 if arc >= 0 and is_plane(phi):
                     third = swing(side, arc, phi.n)
                 bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
+                if arc >= 0 and phi.kind == AXIS_OF:
+                    data = arc_data(side, arc)
+                    if data[0]:
+                        part = S.Box(ta, tb, 0.0, 0.0)
+                        bound = min(bound, round_axis_greatest(phi, sign, data, part, t, 0.0))
             if bound <= most:
                 continue
             if rounds > MOST_PARTS or count >= PARTS_WAITING:

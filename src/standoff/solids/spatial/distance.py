@@ -22,21 +22,20 @@ from standoff.solids.answer import (
 )
 from standoff.solids.asked import DEADLINE
 from standoff.solids.parting import parted
+from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.left_open import around, open_pairs
 from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.overlap import ball_beside, common_ball
-from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, within_box
+from standoff.solids.spatial.pair import Place, PlacedPair, references_of, within_box
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.solid_model import SolidModel, as_model
+from standoff.solids.spatial.solid_model import as_model
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_ROUNDING, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
-# Reference points that are tried until one is off the other's boundary.
-TRIED = 6
 # Common points of the boundaries beside which a point inside both is sought, where nothing parts
 # the solids.
 MOST_COMMON = 8
@@ -128,7 +127,7 @@ def spatial_distance(
 def _inside(pair: PlacedPair, which: str) -> bool:
     """Is a point of one solid's boundary inside the other?"""
     own, other = (pair.a, pair.b) if which == "A" else (pair.b, pair.a)
-    for point in _references(own):
+    for point in references_of(own):
         if which == "A":
             spot = pair.in_b(point @ pair.ra.T + pair.pa)
         else:
@@ -141,12 +140,6 @@ def _inside(pair: PlacedPair, which: str) -> bool:
         if float(told.lower_bound[0]) > 0.0:
             return False
     return False
-
-
-def _references(solid: SolidModel) -> Array:
-    if solid.references is None:
-        solid.references = reference_points(solid, TRIED)
-    return solid.references
 
 
 def _places(pair: PlacedPair, found: Found, senses: tuple[int, int], above: float) -> list[Place]:
@@ -215,7 +208,7 @@ def _meeting(
     middle = 0.5 * (place.point_a + place.point_b)
     starts = [middle]
     for own, other, which in ((pair.a, pair.b, "A"), (pair.b, pair.a, "B")):
-        for point in _references(own):
+        for point in references_of(own):
             world = point @ pair.ra.T + pair.pa if which == "A" else point @ pair.rb.T + pair.pb
             spot = pair.in_b(world) if which == "A" else pair.in_a(world)
             if within_box(other, spot):
@@ -240,6 +233,7 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
         overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance)
         if overlap:
             return _answer(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
+        way = depth_bound(pair, found.tolerance)
     places = near
     if sought.above > 0.0:
         others = _places(pair, pair.least(senses, sought), senses, sought.above)
@@ -258,13 +252,14 @@ def _nearest(found: Found) -> Array:
 
 def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
     """Without the places where boundaries only cross, as those of a solid's face and of the sides
-    of what stands on it, unless there is no other."""
+    of what stands on it, unless there is no other. Its distance is that of the nearest one left."""
     rows = _nearest(found)
     touch = [row for row in rows if is_stationary(pair, pair.place(row, senses), IN_CONTACT)]
     if not touch:
         return found
     farther = found.minima[len(rows) :]
-    return replace(found, minima=np.concatenate([touch, farther]), best=touch[0])
+    minima = np.concatenate([touch, farther])
+    return replace(found, upper=float(touch[0][0]), minima=minima, best=touch[0])
 
 
 def _is_apart(pair: PlacedPair) -> bool:

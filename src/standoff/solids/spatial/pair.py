@@ -19,6 +19,9 @@ from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import COLLAPSED_FRAME, HAS_DIRECTION, LEAST_LENGTH
 
+# Reference points, which are tried until one is off the other's boundary.
+REFERENCES = 6
+
 
 @dataclass(frozen=True)
 class Place:
@@ -167,15 +170,17 @@ def parameters(solid: SolidModel, leaf: int, values: Array) -> tuple[float, ...]
     return tuple(float(x) for x in values[: solid.leaves[leaf].dim])
 
 
-def reference_points(solid: SolidModel, count: int) -> Array:
-    """Points of a solid's boundary, own frame: vertices first, then middles of leaves."""
-    vertices = np.asarray(solid.boundary.vertex_points).reshape(-1, 3)[:count]
-    whole = (k for k, leaf in enumerate(solid.leaves) if leaf.dim and not leaf.cut)
-    others = [
-        leaf_jet_of(solid.packed, k, *middle_of(solid, k))[0]
-        for k in islice(whole, count - len(vertices))
-    ]
-    return np.vstack([vertices, np.reshape(others, (-1, 3))])
+def references_of(solid: SolidModel) -> Array:
+    """Some points of a solid's boundary, own frame: vertices first, then middles of leaves."""
+    if solid.references is None:
+        vertices = np.asarray(solid.boundary.vertex_points).reshape(-1, 3)[:REFERENCES]
+        whole = (k for k, leaf in enumerate(solid.leaves) if leaf.dim and not leaf.cut)
+        others = [
+            leaf_jet_of(solid.packed, k, *middle_of(solid, k))[0]
+            for k in islice(whole, REFERENCES - len(vertices))
+        ]
+        solid.references = np.vstack([vertices, np.reshape(others, (-1, 3))])
+    return solid.references
 
 
 def middle_of(solid: SolidModel, leaf: int) -> tuple[float, float]:

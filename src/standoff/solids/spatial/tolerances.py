@@ -81,3 +81,6 @@ roundings of their coordinates."""
 TURN_ROUNDING: Final = 1e-9
 """Sine and radians: for the rounding of computed normals, and of an axis that differs from another
 by `ONE_AXIS`, in the turn of an edge."""
+BESIDE_CONTACT: Final = 1e-6
+"""Of the sizes: around a part of a boundary that the other one holds, how far one potential has to
+be between both; far more than the tolerance, far less than a part."""

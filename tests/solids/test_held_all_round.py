@@ -1,0 +1,82 @@
+"""Solids that touch all round, and those that only seem to: what is proven where nothing parts them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import standoff as so
+from families.solid_shapes import ball, peg, prism, socket, tube
+from standoff.solids import Solid, distance
+from standoff.solids.spatial.held import depth_bound
+from standoff.solids.spatial.pair import PlacedPair
+from standoff.tracking.status import Status
+
+STILL = so.Pose.identity()
+HOLE = tube(1.0, 2.0, 0.0, 1.0)
+SLOT = prism([(-1, -1), (3, -1), (3, 2), (2, 2), (2, 0), (0, 0), (0, 2), (-1, 2)], 3.0)
+
+
+def block(width: float, height: float, depth: float) -> Solid:
+    return prism([(0, 0), (width, 0), (width, height), (0, height)], depth)
+
+
+HELD = {
+    "pin through its hole": (HOLE, peg(1.0, -0.5, 1.5), 0.0),
+    "pin within its hole": (HOLE, peg(1.0, 0.2, 0.7), 0.0),
+    "pin half out of its hole": (HOLE, peg(1.0, 0.2, 1.7), 0.0),
+    "block on three sides": (SLOT, block(2.0, 1.0, 2.0), 0.5),
+    "block flush with its slot": (SLOT, block(2.0, 1.0, 3.0), 0.0),
+    "block through its slot": (SLOT, block(2.0, 3.0, 5.0), -1.0),
+    "ball in its socket": (socket(1.0, 2.0), ball(1.0), 0.0),
+}
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_what_is_held_all_round_touches(name: str) -> None:
+    a, b, up = HELD[name]
+    for first, other, at in ((a, b, up), (b, a, -up)):
+        answer = distance(first, other, STILL, so.Pose(np.eye(3), (0.0, 0.0, at)))
+        assert answer.status is Status.TOUCHING
+        assert abs(answer.distance) <= 1e-10 * (a.size + b.size)
+        assert -2.1e-10 * (a.size + b.size) <= answer.lower_bound <= 0.0
+
+
+def pair_of(a: Solid, b: Solid, move: tuple[float, float, float]) -> PlacedPair:
+    return PlacedPair(a, b, STILL, so.Pose(np.eye(3), move))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(-9.0, -3.0), st.floats(0.0, 1.0), st.floats(0.0, 6.28))
+def test_no_bound_is_below_the_depth_of_a_pin_in_its_hole(
+    exponent: float, share: float, angle: float
+) -> None:
+    """A pin that is too thick, or off its hole's axis, or both, by a known length."""
+    depth = 10.0**exponent
+    thicker, off = share * depth, (1.0 - share) * depth
+    pin = peg(1.0 + thicker, 0.2, 0.7)
+    pair = pair_of(HOLE, pin, (off * np.cos(angle), off * np.sin(angle), 0.0))
+    tolerance = 1e-10 * pair.size
+    assert depth_bound(pair, tolerance) >= depth * (1.0 - 1e-6) - 1e-15
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-9.0, -3.0), st.floats(-0.4, 0.4))
+def test_no_bound_is_below_the_depth_of_a_block_in_its_slot(exponent: float, up: float) -> None:
+    depth = 10.0**exponent
+    pair = pair_of(SLOT, block(2.0 + depth, 1.0, 2.0), (-0.5 * depth, 0.0, 0.5 + up))
+    assert depth_bound(pair, 1e-10 * pair.size) >= 0.5 * depth * (1.0 - 1e-6) - 1e-15
+
+
+def test_what_is_inside_is_not_held() -> None:
+    """No boundary enters the other solid, but one solid is in the other's material."""
+    inside = (
+        pair_of(ball(1.0), ball(1.0), (0.0, 0.0, 0.0)),
+        pair_of(block(4.0, 4.0, 2.0), block(1.0, 1.0, 1.0), (1.0, 1.0, 0.0)),
+        pair_of(block(4.0, 4.0, 2.0), peg(0.5, 0.0, 1.0), (2.0, 2.0, 0.0)),
+        pair_of(socket(1.0, 2.0), ball(2.0), (0.0, 0.0, 0.0)),
+    )
+    for pair in inside:
+        assert depth_bound(pair, 1e-10 * pair.size) == np.inf
