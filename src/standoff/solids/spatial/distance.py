@@ -25,10 +25,11 @@ from standoff.solids.parting import parted
 from standoff.solids.spatial.left_open import around, open_pairs
 from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
+from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.overlap import ball_beside, common_ball
-from standoff.solids.spatial.pair import Place, PlacedPair, reference_points, within_box
+from standoff.solids.spatial.pair import Place, PlacedPair, reference_points
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.solid_model import SolidModel, as_model
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_ROUNDING, PROOF_TOLERANCE
@@ -133,7 +134,7 @@ def _inside(pair: PlacedPair, which: str) -> bool:
             spot = pair.in_b(point @ pair.ra.T + pair.pa)
         else:
             spot = pair.in_a(point @ pair.rb.T + pair.pb)
-        if not within_box(other, spot):
+        if not other.may_hold(spot):
             return False
         told = signed_distances(other, spot[None])
         if float(told.upper_bound[0]) < 0.0:
@@ -218,7 +219,7 @@ def _meeting(
         for point in _references(own):
             world = point @ pair.ra.T + pair.pa if which == "A" else point @ pair.rb.T + pair.pb
             spot = pair.in_b(world) if which == "A" else pair.in_a(world)
-            if within_box(other, spot):
+            if other.may_hold(spot):
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
     if overlap:
