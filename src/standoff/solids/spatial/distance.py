@@ -178,8 +178,13 @@ def _apart(
     sought: Sought,
 ) -> SolidProximity:
     places = _places(pair, found, senses, sought.above)
-    near = [place for place in places if place.distance <= found.upper + found.tolerance]
-    continuum = continuum_of(pair, near, found, senses)
+    most = found.upper + found.tolerance
+    near = [place for place in places if place.distance <= most]
+    ties = near
+    if sought.above > 0.0:  # of each set of nearest pairs only one is among the local minima
+        tied = replace(found, minima=found.minima[found.minima[:, 0] <= most])
+        ties = _places(pair, tied, senses, 0.0)
+    continuum = continuum_of(pair, ties, found, senses)
     if found.lower <= 0.0:
         # what stays open may be that the boundaries meet, so nothing is known below
         found = replace(found, lower=-np.inf)
