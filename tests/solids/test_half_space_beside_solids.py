@@ -87,6 +87,20 @@ def test_above_and_below_a_plane(
     np.testing.assert_allclose(world, point, atol=1e-11 * (gap + 100.0))
 
 
+@pytest.mark.parametrize("side", [1.0, 1.15, 1.3, 1.5, 1.75, 1.99])
+def test_the_square_reaches_the_corners_of_the_ball(side: float) -> None:
+    """The nearest corner of a tilted plate is as far from its middle as any point."""
+    plate = so.solids.Solid(so.shapes.box((side, side, 1e-3)))
+    turn = Rotation.from_rotvec([0.0, 0.0, 0.25 * np.pi])  # a corner along an axis of the square
+    tilted = (Rotation.from_rotvec([0.02, -0.03, 0.0]) * turn).as_matrix()
+    corners = np.array(plate.boundary.vertex_points) @ tilted.T
+    at = so.Pose(tilted, [3.0, 4.0, 0.5 - corners[:, 2].min()])
+    found = so.solids.distance(plate, so.shapes.halfspace(), at, STILL)
+    assert found.distance == pytest.approx(0.5, abs=1e-9)
+    foot = corners[corners[:, 2].argmin()] + [3.0, 4.0, 0.0]
+    np.testing.assert_allclose(found.point_b, [*foot[:2], 0.0], atol=1e-7)
+
+
 def test_its_square_is_just_large_enough() -> None:
     solid, plane = as_model(bolt()), so.shapes.halfspace()
     for deep in (-1e4, 0.0, 1e4):

@@ -126,6 +126,19 @@ def test_apart_they_are_as_near_as_convex_bodies(
         assert np.linalg.norm(spots - found.point_a, axis=1).min() <= 1e-9 * both
 
 
+def test_a_cone_s_parameters_are_those_of_its_core() -> None:
+    """The moved cone begins at another apex, so that its v is another."""
+    body, (partner, solid) = shape("cone"), partners()[0]
+    for angle in (0.3, 2.0, -1.0):
+        place = at(1.5 * np.cos(angle), 1.5 * np.sin(angle), 0.6)
+        told = so.distance(body, partner, STILL, place)
+        found = so.solids.distance(body, solid, STILL, place)
+        assert told.feature_a == found.feature_a == Feature("face", 0)
+        np.testing.assert_allclose(found.parameters_a[1], told.parameters_a[1], atol=1e-6)
+        core = core_points(body, found.feature_a, found.parameters_a)
+        np.testing.assert_allclose(core[0] + R * found.normal, found.point_a, atol=1e-12)
+
+
 def core_points(body: Body, feature: Feature, parameters: tuple[float, ...]) -> np.ndarray:
     """(n, 3) what a feature of the core and parameters stand for, on each of a face's charts."""
     if feature.kind == "vertex":

@@ -384,6 +384,13 @@ def test_every_convex_body_may_be_beside_a_solid() -> None:
     assert found.pieces == ("", "ball")
     far = so.distance(so.compound({"a": SOCKET, "b": BALL}), bodies["ground"], at(0, 0, 5.0), at(0))
     close(far, 3.7)
+    # the other one's box is as low, but it is not as near
+    tilted = so.Pose(rot(np.array([0.5, 0.4, 0.3])), [4.0, 0.0, 5e-3])
+    pair = so.compound({"a": (SOCKET, at(0.0)), "b": (SOCKET, tilted)})
+    found = so.distance(pair, bodies["ground"], at(0, 0, 5.0), at(0))
+    close(found, 3.7)
+    assert [each.pieces for each in found.minima] == [("a", "")]
+    assert found.unique
 
 
 def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:

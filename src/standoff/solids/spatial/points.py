@@ -123,8 +123,6 @@ def side_of(solid: SolidModel, found: Found, point: Array) -> float:
     of an edge's or a vertex's normals. At an edge's end the point may be off across it, and the
     vertex decides. A ray decides where none does.
     """
-    if not solid.boundary.face_parts:
-        return 1.0  # a point has no inside
     for row in (found.best, *found.minima[:MOST_PLACES]):
         leaf, u, v = int(row[2]), float(row[5]), float(row[6])
         direction = outside_direction(solid, leaf, u, v)

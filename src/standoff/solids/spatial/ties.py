@@ -68,8 +68,8 @@ def continuum_of(
 
 
 def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
-    """Places of pairs of leaves with the most parameters first; among them those of planes, and then
-    those of features that have the most places in common."""
+    """Places of pairs of leaves with the most parameters first; among them those of planes, and
+    then those of features that have the most places in common."""
     leaves = [
         (pair.a.leaves[int(place.row[1])], pair.b.leaves[int(place.row[2])]) for place in places
     ]
