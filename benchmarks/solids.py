@@ -12,10 +12,14 @@ from itertools import pairwise
 
 import numpy as np
 
+import standoff as so
 from standoff.bodies import Edge, Face
 from standoff.geometry import ConicArc, Cylinder, Plane
 from standoff.solids import Solid
 from standoff.solids.spatial.distance import spatial_distance
+from standoff.solids.spatial.half_space import HalfSpace, size_together
+from standoff.solids.spatial.models import as_model
+from standoff.solids.spatial.solid_model import SolidModel
 
 GAPS = (1.0, 0.1, 1e-2, 1e-3, 1e-6)
 AXES = np.eye(3)
@@ -55,7 +59,7 @@ def drawn(faces: int, rng: np.random.Generator) -> Solid:
 
 
 def posed(
-    a: Solid, b: Solid, gap: float, rng: np.random.Generator
+    a: Solid, b: SolidModel, gap: float, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:
     """A drawn pose at which the solids are `gap` apart, found by moving along the normal."""
     q = rng.normal(size=4)
@@ -67,8 +71,8 @@ def posed(
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
         ]
     )
-    way = rng.normal(size=3)
-    move = way / np.linalg.norm(way) * (a.size + b.size)
+    way = -turn[:, 2] if isinstance(b, HalfSpace) else rng.normal(size=3)
+    move = way / np.linalg.norm(way) * size_together(a, b)
     for _ in range(12):
         answer = spatial_distance(a, b, None, (turn, move))
         if abs(answer.distance - gap) <= 0.1 * gap:
@@ -77,7 +81,7 @@ def posed(
     return turn, move
 
 
-def row(a: Solid, b: Solid, gap: float, poses: int, rng: np.random.Generator) -> str:
+def row(a: Solid, b: SolidModel, gap: float, poses: int, rng: np.random.Generator) -> str:
     times, statuses = [], Counter()
     for _ in range(poses):
         pose = posed(a, b, gap, rng)
@@ -89,14 +93,38 @@ def row(a: Solid, b: Solid, gap: float, poses: int, rng: np.random.Generator) ->
     return f"{np.median(times):8.2f} {np.quantile(times, 0.99):8.2f} {max(times):8.2f}  {told}"
 
 
+def beside(part: Solid, poses: int, rng: np.random.Generator) -> None:
+    """Convex bodies beside a part: what making each takes, and a query."""
+    shapes = {
+        "sphere": so.shapes.sphere(0.3),
+        "capsule": so.shapes.capsule(0.1, 0.6),
+        "rounded box": so.shapes.box((0.4, 0.5, 0.6), rounding=0.05),
+        "rounded cylinder": so.shapes.cylinder(0.2, 0.5, rounding=0.05),
+        "half-space": so.shapes.halfspace(),
+        "point": so.shapes.point(),
+    }
+    spatial_distance(part, so.shapes.capsule(0.1, 0.5), None, (np.eye(3), (3.0, 0, 0)))
+    print(f"beside {part.boundary.n_faces} faces: gap, median, 99 %, worst (ms)")
+    for name, body in shapes.items():
+        start = time.perf_counter()
+        made = as_model(body)
+        print(f"{name}: made in {1e3 * (time.perf_counter() - start):.0f} ms")
+        for gap in GAPS:
+            print(f"{gap:8g} {row(part, made, gap, poses, rng)}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--poses", type=int, default=100)
     parser.add_argument("--faces", type=int, nargs="*", default=[10, 30, 100])
+    parser.add_argument("--beside", action="store_true", help="convex bodies beside the parts")
     given = parser.parse_args()
     rng = np.random.default_rng(0)
     for faces in given.faces:
         a, b = drawn(faces, rng), drawn(faces, rng)
+        if given.beside:
+            beside(a, given.poses, rng)
+            continue
         spatial_distance(a, b, None, (np.eye(3), (3.0, 0, 0)))
         print(f"{a.boundary.n_faces} faces, {len(a.leaves)} leaves: gap, median, 99 %, worst (ms)")
         for gap in GAPS:

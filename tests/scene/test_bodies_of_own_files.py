@@ -136,6 +136,47 @@ def test_the_commands_take_solids(command: Command, folder: Path) -> None:
     assert (folder / "pairs.parquet").exists()
 
 
+def test_every_shape_may_be_beside_a_solid(command: Command, folder: Path) -> None:
+    text = """version = 1
+[bodies.ring]
+body = "ring.json"
+[bodies.ball]
+shape = "sphere"
+radius = 0.9
+[bodies.rod]
+shape = "capsule"
+radius = 0.2
+length = 1.0
+[bodies.ground]
+shape = "halfspace"
+offset = -1.25
+[bodies.block]
+shape = "box"
+size = [1.0, 1.0, 1.0]
+rounding = 0.1
+[placements.ball]
+position = [0.03, 0.04, 0.0]
+[placements.rod]
+position = [2.0, 0.0, 0.0]
+[placements.ground]
+position = [40.0, 30.0, 0.0]
+[placements.block]
+position = [0.0, 2.5, 0.0]
+[world]
+"""
+    page = folder / "page.html"
+    code, told = command(text, "clearance", "--json", "--page", page)
+    assert code == 0
+    pairs = {tuple(pair["names"]): pair for pair in json.loads(told)["pairs"]}
+    for name, gap in (("ball", 0.05), ("rod", 0.3), ("ground", 0.75), ("block", 0.5)):
+        assert pairs["ring", name]["distance"] == pytest.approx(gap, abs=1e-8)
+    assert page.read_text().count("data:image/png") >= 1
+    code, told = command(text.replace("[world]", '[pair]\na = "ground"\nb = "ring"'), "distance")
+    assert code == 0
+    assert "face 0" in told
+    assert "0.75" in told or "0.7499999" in told
+
+
 def test_a_body_inside_another_is_told_over_a_motion(command: Command) -> None:
     """A stone jumps from before the ring into its material: the frame inside is the least."""
     text = (

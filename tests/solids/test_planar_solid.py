@@ -117,6 +117,14 @@ def test_bodies_and_their_rounding() -> None:
     assert set(solid.kinds) == {"smooth"}
     disc = so.PlanarSolid.from_body(so.shapes.sphere(0.5))
     assert disc.area == pytest.approx(np.pi / 4.0)
+    stadium = so.PlanarSolid.from_body(so.shapes.segment((1, 2, 0), (4, 6, 0), rounding=0.5))
+    assert stadium.area == pytest.approx(5.0 + 0.25 * np.pi, rel=1e-13)
+    assert set(stadium.kinds) == {"smooth"}
+    spots = np.array([(2.5, 4.0), (1.0, 2.0), (0.0, 2.0), (5.5, 8.0), (1.7, 4.6)])
+    found = stadium.signed_distance(spots)
+    np.testing.assert_allclose(found, [-0.5, -0.5, 0.5, 2.0, 0.5], atol=1e-13)
+    with pytest.raises(so.BodyError, match="has no area in the plane"):
+        so.PlanarSolid.from_body(so.shapes.capsule(0.2, 0.5))  # along z
     at = so.Pose(np.eye(3), (5.0, 5.0, 0.0))
     answer = distance(body, disc, so.Pose.identity(), at)
     assert answer.distance == pytest.approx(5.0 - 0.25 - 0.5, abs=1e-13)

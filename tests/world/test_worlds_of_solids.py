@@ -346,16 +346,64 @@ def test_planar_solids_in_a_planar_world() -> None:
     assert world.dimension == 2
 
 
+def test_every_convex_body_may_be_beside_a_solid() -> None:
+    """A socket on the ground, a ball in it, a capsule beside it, a point and a rounded box above
+    it, as bodies and as pieces of compounds."""
+    bodies = {
+        "socket": SOCKET,
+        "ground": so.shapes.halfspace(),
+        "ball": so.shapes.sphere(0.4),
+        "rod": so.shapes.capsule(0.2, 1.0),
+        "tip": so.shapes.point(),
+        "block": so.shapes.box((1.0, 1.0, 1.0), rounding=0.1),
+    }
+    places = {
+        "socket": at(0.0, 0.0, 1.8),
+        "ground": at(7.0, -3.0),
+        "ball": at(0.1, 0.0, 1.8),
+        "rod": at(2.0, 0.0, 1.8),
+        "tip": at(0.0, 0.0, 4.0),
+        "block": at(0.0, 2.5, 1.8),
+    }
+    near = {
+        ("socket", "ground"): 0.5,
+        ("socket", "ball"): 0.5,
+        ("socket", "rod"): 0.5,
+        ("socket", "tip"): 0.9,
+        ("socket", "block"): 0.7,
+    }
+    world = so.World(bodies, fixed={"ground": places.pop("ground")}, within=1.5)
+    answer = world.distances(places)
+    for names, gap in near.items():
+        close(answer[names], gap)
+    # convex pairs are answered as before
+    assert answer["rod", "ground"].distance == pytest.approx(1.1)
+    whole = so.compound({name: bodies[name] for name in ("ball", "rod")})
+    found = so.distance(SOCKET, whole, at(0.0), at(2.0))
+    close(found, 0.3)
+    assert found.pieces == ("", "ball")
+    far = so.distance(so.compound({"a": SOCKET, "b": BALL}), bodies["ground"], at(0, 0, 5.0), at(0))
+    close(far, 3.7)
+    # the other one's box is as low, but it is not as near
+    tilted = so.Pose(rot(np.array([0.5, 0.4, 0.3])), [4.0, 0.0, 5e-3])
+    pair = so.compound({"a": (SOCKET, at(0.0)), "b": (SOCKET, tilted)})
+    found = so.distance(pair, bodies["ground"], at(0, 0, 5.0), at(0))
+    close(found, 3.7)
+    assert [each.pieces for each in found.minima] == [("a", "")]
+    assert found.unique
+
+
 def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:
     for shape, words in (
-        (so.shapes.halfspace(), "fix a box in its place"),
-        (so.shapes.sphere(0.5), "so.shapes.ellipsoid"),
+        (so.shapes.segment(0.5), "a radius makes it a ball or a capsule"),
+        (so.shapes.ellipsoid(0.1, 0.2, 0.3, rounding=0.1), "a Sphere, has no exact surface"),
     ):
         with pytest.raises(
             so.StandoffError, match="'other' would be a pair with a solid"
         ) as caught:
             so.World({"socket": SOCKET, "other": shape})
         assert words in str(caught.value)
+        assert "ignore the pair" in str(caught.value)
         # where it is in no such pair it may stay
         so.World({"socket": SOCKET, "other": shape}, ignore=[("socket", "other")])
     world = so.World({"socket": SOCKET, "ball": BALL})

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,7 @@ from standoff.bodies.tessellation import TILE, chart_row, surface_of
 from standoff.bodies.tolerances import BOX_REACH
 from standoff.geometry.bernstein import segments
 from standoff.geometry.patch_bounds import PatchBounds
-from standoff.geometry.pcurve_boxes import bezier_box, pcurve_box
+from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -126,8 +125,7 @@ def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tu
             yield bezier_box(part)
         return
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
-    for a, b in pairwise(np.linspace(first, last, parts + 1)):
-        yield pcurve_box(kind, matrix, float(a), float(b))
+    yield from zip(*pcurve_boxes(kind, matrix, np.linspace(first, last, parts + 1)), strict=True)
 
 
 @cache

@@ -242,3 +242,12 @@ size. The computed value keeps it."""
 def coordinate_roundoff(points: Array) -> float:
     """How far parts at these points, (n, 3), may miss each other by roundoff alone, length."""
     return COORDINATE_ROUNDINGS * EPS * float(np.abs(points).max(initial=0.0))
+
+
+EXACT_KIND: Final = 1e-12
+"""Cosine, and relative for lengths: normals and semi-axes that differ by less are the same, some
+thousand roundings. Then a rounded face, moved out by the radius, is of the kind of its core's."""
+
+NO_STRIP: Final = 1e-10
+"""Part of the size: a rounded edge or vertex whose strip of cylinder, torus or sphere is narrower
+than this has none: its faces' moved edges are one within the tolerance of joints."""

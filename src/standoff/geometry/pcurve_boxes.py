@@ -14,23 +14,56 @@ from standoff.kernels.body import layout as L
 CONIC_PARTS = 8
 
 
-def pcurve_box(kind: int, matrix: Array, first: float, last: float) -> tuple[Array, Array]:
-    """(low, high), each (2,), around a LINE or CONIC of ``Pcurve`` where its weight is positive."""
-    steps = np.linspace(first, last, 2 if kind == L.LINE else CONIC_PARTS + 1)
-    t = Interval(steps[:-1], steps[1:])
+def pcurve_boxes(kind: int, matrix: Array, ends: Array) -> tuple[Array, Array]:
+    """(low, high), each (n, 2), around the parts of a LINE or CONIC of ``Pcurve`` between n + 1
+    ascending parameters, where its weight is positive."""
     if kind == L.LINE:
-        ends = matrix[:, [0]] * steps + matrix[:, [2]]
-        return bezier_box(ends.T)
+        spots = matrix[:, [0]] * ends + matrix[:, [2]]
+        places = spots[:2] / spots[2]
+        sides = np.stack([places[:, :-1], places[:, 1:]])
+        margin = BOX_MARGIN * np.abs(sides).max(axis=0)
+        return (sides.min(axis=0) - margin).T, (sides.max(axis=0) + margin).T
+    steps = np.linspace(ends[:-1], ends[1:], CONIC_PARTS + 1, axis=-1)
+    t = Interval(steps[:, :-1].ravel(), steps[:, 1:].ravel())
     a, b, c = (interval(column[:, None]) for column in matrix.T)
     h = wave(a, b, t) + c
     with np.errstate(all="ignore"):
-        places = stacked([h[0] / h[2], h[1] / h[2]])
-    seen = places.known.all(axis=0)
-    return places.lo[:, seen].min(axis=1), places.hi[:, seen].max(axis=1)
+        found = stacked([h[0] / h[2], h[1] / h[2]])
+    seen = found.known.all(axis=0).reshape(-1, CONIC_PARTS)
+    if not seen.any(axis=1).all():
+        raise ValueError("a part of a trimming curve is nowhere before its chart")
+    lows = np.where(seen, found.lo.reshape(2, *seen.shape), np.inf)
+    highs = np.where(seen, found.hi.reshape(2, *seen.shape), -np.inf)
+    return lows.min(axis=2).T, highs.max(axis=2).T
+
+
+def pcurve_bends(kind: int, matrix: Array, ends: Array) -> Array:
+    """(n, 2) bounds of the second derivatives of u and v along the same parts; inf where the weight
+    may be zero."""
+    steps = np.linspace(ends[:-1], ends[1:], CONIC_PARTS + 1, axis=-1)
+    t = Interval(steps[:, :-1].ravel(), steps[:, 1:].ravel())
+    a, b, c = (interval(column[:, None]) for column in matrix.T)
+    if kind == L.LINE:
+        none = t * 0.0
+        h, rate, bent = a * t + c, a + none, stacked([none, none, none])
+    else:
+        bent = -wave(a, b, t)
+        h, rate = c - bent, wave(b, -a, t)
+    found = []
+    with np.errstate(all="ignore"):
+        for k in range(2):
+            # of the quotient's own derivatives: each from the one before
+            place = h[k] / h[2]
+            slope = (rate[k] - place * rate[2]) / h[2]
+            bend = (bent[k] - slope * rate[2] * 2.0 - place * bent[2]) / h[2]
+            greatest = np.where(bend.known, bend.magnitude, np.inf)
+            found.append(greatest.reshape(-1, CONIC_PARTS).max(axis=1))
+    return np.column_stack(found)
 
 
 def bezier_box(points: Array) -> tuple[Array, Array]:
-    """The same for a rational Bezier curve's points (n, 3), homogeneous (w u, w v, w)."""
+    """(low, high), each (2,), around a rational Bezier curve's points (n, 3), homogeneous
+    (w u, w v, w)."""
     places = points[:, :2] / points[:, 2:]
     margin = BOX_MARGIN * np.abs(places).max(axis=0)
     return places.min(axis=0) - margin, places.max(axis=0) + margin

@@ -17,6 +17,7 @@ from standoff.solids.answer import (
     SolidCounts,
     SolidProximity,
 )
+from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -133,7 +134,7 @@ def _nearest(answers: Sequence[OfPieces], beyond: float) -> OfPieces:
     be nearer and is open leaves it open."""
     least = min(answers, key=lambda each: each.found.distance)
     # nearer to each other than they are proven to: as near as each other
-    most = least.found.distance + PROOF_TOLERANCE * sum(solid.size for solid in least.solids)
+    most = least.found.distance + PROOF_TOLERANCE * size_together(*least.solids)
     tied = [each for each in answers if each.found.distance <= most]
     nearest = next((each for each in tied if each.found.continuum), least)
     found = nearest.found

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from standoff.errors import StandoffError
 from standoff.world.pieces import Piece, PieceUnion
 from standoff.world.rules import Rules
-from standoff.world.shapes import Shape, boundary_of, dimension_of_shape, is_bounded, is_solid
+from standoff.world.shapes import Shape, dimension_of_shape, is_solid
 
 
 class SolidPairs(NamedTuple):
@@ -46,7 +46,8 @@ def solid_pairs(
     Raises
     ------
     StandoffError
-        A half-space or a rounded body in a pair with a solid; its name is told.
+        A body in a pair with a solid that has no volume, or whose rounded boundary is of no exact
+        kind; its name is told.
     """
     n = len(names)
     solid = np.array([any(is_solid(piece.body) for piece in each) for each in pieces])
@@ -76,21 +77,12 @@ def _asked(name: str, shape: Shape) -> Any:
             from standoff.solids.planar.solid import PlanarSolid
 
             return PlanarSolid.of(shape)
-        from standoff.solids.spatial.solid_model import as_model
+        from standoff.solids.spatial.models import as_model
 
         return as_model(shape)
     except StandoffError as error:
-        if not is_bounded(shape):
-            way = "fix a box in its place, or ignore the pair"
-        elif boundary_of(shape).radius:
-            way = "so.shapes.ellipsoid((r, r, r)) is a ball with faces"
-        else:
-            way = "give a body with faces, or ignore the pair"
         raise StandoffError(
-            f"{name!r} would be a pair with a solid: {error} Half-spaces, rounded bodies, points "
-            f"and segments are asked with convex bodies alone: {way}.",
-            "bodies",
-            shape,
+            f"{name!r} would be a pair with a solid: {error} Or ignore the pair.", "bodies", shape
         ) from error
 
 

@@ -21,6 +21,7 @@ from standoff.solids.answer import Overlap, SolidProximity
 from standoff.solids.inner_ball import ball_inside
 from standoff.solids.of_pieces import OfPieces, answer_of_pieces
 from standoff.solids.query import distance
+from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -105,7 +106,7 @@ class SolidRows:
         doubt = self._composed(p) + self._composed(q)
         horizon = float(self.table.known[k, W.C_HORIZON])
         # more than the horizon, so that the bound of what is far is beyond it
-        more = doubt + slack_of(a) + slack_of(b) + PROOF_TOLERANCE * (a.size + b.size)
+        more = doubt + slack_of(a) + slack_of(b) + PROOF_TOLERANCE * size_together(a, b)
         within = None if horizon == math.inf else horizon + more
         found = distance(a, b, self._pose(p), self._pose(q), within=within)
         return replace(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -88,27 +88,45 @@ def _title(boundary: Boundary, name: str) -> str:
     return f"{short_name(name)}: {', '.join(told)}, {boundary.n_vertices} vertices"
 
 
+class Pictured(NamedTuple):
+    """One solid of a picture.
+
+    Attributes
+    ----------
+    boundary : Boundary
+    name : str
+    frame : (12,) array
+        World pose of the boundary's frame: R by rows, p.
+    part : Feature
+        Of the boundary, that is marked.
+    """
+
+    boundary: Boundary
+    name: str
+    frame: Array
+    part: Feature
+
+
 def pair_figure(
-    boundaries: tuple[Boundary, Boundary],
-    names: tuple[str, str],
+    solids: tuple[Pictured, Pictured],
     answer: SolidProximity,
     view: tuple[float, float] | None,
     unit: str,
 ) -> Figure:
     """Two solids where an answer holds."""
-    skins = [skin_of(b, pose) for b, pose in zip(boundaries, answer.poses, strict=True)]
+    skins = [skin_of(solid.boundary, solid.frame) for solid in solids]
     chosen = _best_view(skins, answer) if view is None else view
     camera = camera_on(np.concatenate([skin.cloud for skin in skins]), chosen)
+    names = solids[0].name, solids[1].name
     handles = [*_solids_legend(names, answer), *edges_legend(skins)]
-    size = boundaries[0].size + boundaries[1].size
+    size = solids[0].boundary.size + solids[1].boundary.size
     handles += marks_legend(answer, size, unit)
     rows = -(-len(handles) // 2)
     figure = Figure(figsize=(6.4, 6.0 + 6.4 * LEGEND_ROW * rows), dpi=120)
     FigureCanvasAgg(figure)
     low = LEGEND_ROW * (rows + 0.6)
     axes = figure.add_axes((0.02, low, 0.96, 0.98 - low))
-    features = answer.feature_a, answer.feature_b
-    _draw_skins(axes, camera, skins, answer, features)
+    _draw_skins(axes, camera, skins, answer, (solids[0].part, solids[1].part))
     draw_marks(axes, answer, camera.flat, camera.wide)
     finish(axes, camera, unit)
     figure.legend(handles=handles, loc="lower center", ncols=2, frameon=False, fontsize="small")

@@ -25,10 +25,14 @@ def loops_of_body(body: Body) -> list[Curve]:
     r = body.radius
     if not body.edge_parts and len(body.vertex_points) == 1 and r > 0.0:
         return [ConicArc(body.vertex_points[0], (r, 0.0, 0.0), (0.0, r, 0.0))]
+    if len(body.edge_parts) == 1 and r > 0.0 and body.dimension == 3 and body.flat:
+        p, q = np.asarray(body.vertex_points)
+        return _stadium(p, q, r)
     if body.dimension != 2 or not body.edge_parts:
         raise BodyError(
             f"{body!r} has no area in the plane: give a planar body (so.shapes.planar_loop), a "
-            "point with a radius, or a PlanarSolid.",
+            "point or a segment in it with a radius, or a PlanarSolid, whose signed_distance tells "
+            "how far points are.",
             "body",
             body,
         )
@@ -37,6 +41,18 @@ def loops_of_body(body: Body) -> list[Curve]:
         return curves
     loop = turned(read_loop(curves, f"the loop of {body.name}"), True)
     return _grown(loop, r, body)
+
+
+def _stadium(p: np.ndarray, q: np.ndarray, r: float) -> list[Curve]:
+    """All around a segment, counterclockwise."""
+    along = (q - p) * (r / float(np.linalg.norm(q - p)))
+    left = np.array([-along[1], along[0], 0.0])
+    return [
+        Line(p - left, q - left),
+        ConicArc(q, -left, along, 0.0, np.pi),
+        Line(q + left, p + left),
+        ConicArc(p, left, -along, 0.0, np.pi),
+    ]
 
 
 def _grown(loop: Loop, r: float, body: Body) -> list[Curve]:

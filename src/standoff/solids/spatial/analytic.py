@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.bodies.face_leaves import FaceChart
-from standoff.geometry.curves import ConicArc, Curve, Line
+from standoff.geometry.curves import Curve, Line
+from standoff.geometry.roundness import alike, square
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.swept import Revolution
 from standoff.geometry.validation import Array
@@ -32,8 +33,7 @@ def natural_of(chart: FaceChart) -> tuple[int, Array]:
         normal = normal / np.linalg.norm(normal)
         return TORUS_THROUGH, np.array([chart.outward, 0.0, 0.0, *surface.shift, *normal])
     axis = a[:, 2] / lengths[2]
-    gram = a.T @ a
-    flat = _equal(lengths[0], lengths[1]) and _square(gram, lengths)
+    flat = _equal(lengths[0], lengths[1]) and square(a, ROUND_KIND)
     if surface.kind == L.CYLINDER and flat:
         return AXIS_OF, np.array([sign, lengths[0], 0.0, *surface.shift, *axis])
     if surface.kind == L.CONE and flat:
@@ -86,23 +86,10 @@ def turned_axis(curve: Curve) -> tuple[Array, Array] | None:
     turns = surface.kind in (L.CYLINDER, L.CONE, L.TORUS, L.REVOLUTION)
     a = surface.linear
     lengths = np.linalg.norm(a, axis=0)
-    if level.any() or not (turns and _equal(lengths[0], lengths[1]) and _square(a.T @ a, lengths)):
+    if level.any() or not (turns and _equal(lengths[0], lengths[1]) and square(a, ROUND_KIND)):
         return None
     return surface.shift, a[:, 2] / lengths[2]
 
 
-def round_arc(curve: ConicArc) -> bool:
-    """Is an arc a part of a circle?"""
-    a = curve.basis()[:, :2]
-    lengths = np.linalg.norm(a, axis=0)
-    square = abs(float(a[:, 0] @ a[:, 1])) <= ROUND_KIND * lengths[0] * lengths[1]
-    return square and _equal(lengths[0], lengths[1])
-
-
 def _equal(a: float, b: float) -> bool:
-    return bool(abs(a - b) <= ROUND_KIND * max(abs(a), abs(b)))
-
-
-def _square(gram: Array, lengths: Array) -> bool:
-    off = np.abs(gram) / np.outer(lengths, lengths)
-    return bool(max(off[0, 1], off[0, 2], off[1, 2]) <= ROUND_KIND)
+    return alike(a, b, ROUND_KIND)

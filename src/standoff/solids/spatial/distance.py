@@ -26,10 +26,10 @@ from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.left_open import around, open_pairs
 from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
+from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.overlap import ball_beside, common_ball
-from standoff.solids.spatial.pair import Place, PlacedPair, references_of, within_box
+from standoff.solids.spatial.pair import Place, PlacedPair, references_of
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.solid_model import as_model
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_ROUNDING, PROOF_TOLERANCE
@@ -132,7 +132,7 @@ def _inside(pair: PlacedPair, which: str) -> bool:
             spot = pair.in_b(point @ pair.ra.T + pair.pa)
         else:
             spot = pair.in_a(point @ pair.rb.T + pair.pb)
-        if not within_box(other, spot):
+        if not other.may_hold(spot):
             return False
         told = signed_distances(other, spot[None])
         if float(told.upper_bound[0]) < 0.0:
@@ -170,8 +170,13 @@ def _apart(
     sought: Sought,
 ) -> SolidProximity:
     places = _places(pair, found, senses, sought.above)
-    near = [place for place in places if place.distance <= found.upper + found.tolerance]
-    continuum = continuum_of(pair, near, found, senses)
+    most = found.upper + found.tolerance
+    near = [place for place in places if place.distance <= most]
+    ties = near
+    if sought.above > 0.0:  # of each set of nearest pairs only one is among the local minima
+        tied = replace(found, minima=found.minima[found.minima[:, 0] <= most])
+        ties = _places(pair, tied, senses, 0.0)
+    continuum = continuum_of(pair, ties, found, senses)
     if found.lower <= 0.0:
         # what stays open may be that the boundaries meet, so nothing is known below
         found = replace(found, lower=-np.inf)
@@ -211,7 +216,7 @@ def _meeting(
         for point in references_of(own):
             world = point @ pair.ra.T + pair.pa if which == "A" else point @ pair.rb.T + pair.pb
             spot = pair.in_b(world) if which == "A" else pair.in_a(world)
-            if within_box(other, spot):
+            if other.may_hold(spot):
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
     if overlap:

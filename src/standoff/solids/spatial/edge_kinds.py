@@ -21,14 +21,15 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tolerances import SMOOTH_ANGLE
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.patch_bounds import between
+from standoff.geometry.roundness import round_arc
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, coedge_parameters
 from standoff.kernels.solids.torus_potential import AXIS_OF, CENTRE_OF, CONE_OF, TORUS_THROUGH
-from standoff.solids.spatial.analytic import natural_of, round_arc
+from standoff.solids.spatial.analytic import natural_of
 from standoff.solids.spatial.derivative_bounds import curve_derivatives
 from standoff.solids.spatial.leaves import UNKNOWN, Cone, edge_flags, face_cones
-from standoff.solids.spatial.tolerances import ONE_AXIS, TURN_ROUNDING
+from standoff.solids.spatial.tolerances import ONE_AXIS, ROUND_KIND, TURN_ROUNDING
 from standoff.solids.spatial.trims import Piece, edge_ranges
 
 # Parts of an edge at first, radians; and how often a part is halved.
@@ -159,7 +160,7 @@ def _constant(
     if all(_one_surface(charts[k], charts[m], boundary.size) for k in ones for m in others):
         return EdgeKind.SMOOTH
     curve = boundary.edge_parts[edge].curve
-    if not (isinstance(curve, ConicArc) and round_arc(curve)):
+    if not (isinstance(curve, ConicArc) and round_arc(curve, ROUND_KIND)):
         return None
     if not all(_turned_about(charts[p.chart], curve, boundary.size) for p in of_edge):
         return None

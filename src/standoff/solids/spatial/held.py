@@ -96,7 +96,9 @@ class _Sides:
     def hold(self) -> bool:
         """Is no point of B's boundary deeper in A than twice the tolerance, and A not inside B?"""
         pair = self.pair
-        faces = (k for k, leaf in enumerate(pair.b.leaves) if leaf.dim == 2)
+        faces = [k for k, leaf in enumerate(pair.b.leaves) if leaf.dim == 2]
+        if not (len(self.faces_a) and faces):  # a point
+            return False
         if not all(self._part(leaf, pair.b.leaves[leaf].reals[:4], 0) for leaf in faces):
             return False
         return _joined(self.parts, self.near) and self._outside() and self._other_outside()

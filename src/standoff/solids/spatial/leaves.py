@@ -14,11 +14,12 @@ from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.patch_bounds import between
+from standoff.geometry.roundness import round_arc
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
-from standoff.solids.spatial.analytic import natural_of, round_arc, turned_axis
+from standoff.solids.spatial.analytic import natural_of, turned_axis
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
 from standoff.solids.spatial.tolerances import (
     BOX_SPARE,
@@ -26,6 +27,7 @@ from standoff.solids.spatial.tolerances import (
     DERIVATIVE_INFLATION,
     LEAST_LENGTH,
     NO_AXIS,
+    ROUND_KIND,
     SMOOTH_JOIN,
     SPOT_SPARE,
 )
@@ -240,7 +242,7 @@ def edge_leaves(
     curve = boundary.edge_parts[number].curve
     feature = boundary.n_faces + number
     bounds = curve_derivatives(curve, ranges)
-    arc = isinstance(curve, ConicArc) and round_arc(curve)
+    arc = isinstance(curve, ConicArc) and round_arc(curve, ROUND_KIND)
     kind = S.ROUND_ARC if arc else S.NO_KIND
     axis = turned_axis(curve)
     if axis is not None:

@@ -70,7 +70,7 @@ def _middle(solid: SolidModel, side: int, row: Array, other: Array) -> Array | N
     """The point half way between two points of one feature, own frame; of a face and an edge or a
     vertex of it, if the face is plane. None where there is none on the boundary."""
     leaves = int(row[1 + side]), int(other[1 + side])
-    features = [solid.feature_of(leaf) for leaf in leaves]
+    features = [solid.part_of(leaf) for leaf in leaves]
     at = 0.5 * (row[3 + 2 * side : 5 + 2 * side] + other[3 + 2 * side : 5 + 2 * side])
     parts = [solid.leaves[leaf] for leaf in leaves]
     if features[0] == features[1] and parts[0].chart == parts[1].chart:

@@ -58,7 +58,7 @@ def _climbed(pair: PlacedPair, start: Array, first: float) -> tuple[float, Array
     point, (da, db, ga, gb) = start, pair.depths(start)
     step = first * size
     for _ in range(MOST_STEPS):
-        if step < LAST_CLIMB * size:
+        if step <= LAST_CLIMB * size:
             break
         worse, other = (ga, gb) if da <= db else (gb, ga)
         ways = [worse, worse + other, worse - (worse @ other) * other]

@@ -13,6 +13,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.motion.pose import Pose
 from standoff.solids.answer import NearestPair
+from standoff.solids.spatial.half_space import of_pair
 from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
@@ -38,12 +39,17 @@ class Place:
 
 
 class PlacedPair:
-    """Two solids at world poses."""
+    """Two solids at world poses; of a half-space the part of its plane beside the other.
+
+    ra, pa, rb, pb : the poses of the frames that the search is in.
+    """
 
     def __init__(self, a: SolidModel, b: SolidModel, pose_a: Pose, pose_b: Pose) -> None:
+        a, b = of_pair(a, pose_a, b, pose_b), of_pair(b, pose_b, a, pose_a)
         self.a, self.b = a, b
-        self.ra, self.pa = np.asarray(pose_a.rotation), np.asarray(pose_a.translation)
-        self.rb, self.pb = np.asarray(pose_b.rotation), np.asarray(pose_b.translation)
+        self._given = pose_a, pose_b
+        self.ra, self.pa = a.placed(pose_a)
+        self.rb, self.pb = b.placed(pose_b)
         rotation = self.ra.T @ self.rb
         self.relative = np.concatenate([rotation.ravel(), self.ra.T @ (self.pb - self.pa)])
         self.size = a.size + b.size
@@ -56,17 +62,23 @@ class PlacedPair:
         return np.asarray((points - self.pb) @ self.rb)
 
     @property
+    def frames(self) -> tuple[Array, Array]:
+        """World poses (12,) of the frames of both boundaries: R by rows, p."""
+        return (
+            np.concatenate([self.ra.ravel(), self.pa]),
+            np.concatenate([self.rb.ravel(), self.pb]),
+        )
+
+    @property
     def slack(self) -> float:
         """Of both solids, length."""
         return self.a.slack + self.b.slack
 
     @property
     def poses(self) -> tuple[Array, Array]:
-        """World poses (12,) of both: R by rows, p."""
-        return (
-            np.concatenate([self.ra.ravel(), self.pa]),
-            np.concatenate([self.rb.ravel(), self.pb]),
-        )
+        """World poses (12,) of both as they were given: R by rows, p."""
+        a, b = (np.concatenate([np.ravel(p.rotation), p.translation]) for p in self._given)
+        return a, b
 
     def least(self, senses: tuple[int, int], sought: Sought) -> Found:
         """The search between both boundaries, each seen from outside or inside."""
@@ -76,7 +88,8 @@ class PlacedPair:
 
     def moved(self, way: Array) -> PlacedPair:
         """The same pair with B moved by a world vector."""
-        return PlacedPair(self.a, self.b, Pose(self.ra, self.pa), Pose(self.rb, self.pb + way))
+        pose_a, pose_b = self._given
+        return PlacedPair(self.a, self.b, pose_a, Pose(pose_b.rotation, pose_b.translation + way))
 
     def place(self, row: Array, senses: tuple[int, int]) -> Place:
         """Of a row (distance, leaf_a, leaf_b, parameters)."""
@@ -132,14 +145,15 @@ class PlacedPair:
             place.normal,
             self.a.feature_of(leaf_a),
             self.b.feature_of(leaf_b),
-            parameters(self.a, leaf_a, row[3:5]),
-            parameters(self.b, leaf_b, row[5:7]),
+            self.a.parameters_of(leaf_a, row[3:5]),
+            self.b.parameters_of(leaf_b, row[5:7]),
         )
 
     def gradient(self, place: Place) -> Array:
         """(12,) by unit twists (v_A, omega_A, v_B, omega_B), world axes."""
         to = np.zeros(12)
-        arms = [place.normal, place.point_a - self.pa, place.point_b - self.pb]
+        origins = [np.asarray(pose.translation) for pose in self._given]
+        arms = [place.normal, place.point_a - origins[0], place.point_b - origins[1]]
         gradient(np.concatenate(arms), False, to)
         return to
 
@@ -165,11 +179,6 @@ class PlacedPair:
         return -float(found[0].upper_bound[0]), -float(found[1].upper_bound[0]), ga, gb
 
 
-def parameters(solid: SolidModel, leaf: int, values: Array) -> tuple[float, ...]:
-    """(u, v) of a face, (t,) of an edge, () of a vertex."""
-    return tuple(float(x) for x in values[: solid.leaves[leaf].dim])
-
-
 def references_of(solid: SolidModel) -> Array:
     """Some points of a solid's boundary, own frame: vertices first, then middles of leaves."""
     if solid.references is None:
@@ -186,12 +195,3 @@ def references_of(solid: SolidModel) -> Array:
 def middle_of(solid: SolidModel, leaf: int) -> tuple[float, float]:
     u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
     return 0.5 * (u0 + u1), 0.5 * (v0 + v1)
-
-
-def within_box(solid: SolidModel, point: Array) -> bool:
-    """Is a point, own frame, in the box at the root of a solid's tree?"""
-    o = int(solid.own[S.R_NODES])
-    node = solid.numbers[o : o + S.NODE_REALS]
-    axes = node[S.AXES : S.AXES + 9].reshape(3, 3)
-    away = np.abs(axes @ (point - node[S.CENTRE : S.CENTRE + 3]))
-    return bool((away <= node[S.HALF : S.HALF + 3]).all())

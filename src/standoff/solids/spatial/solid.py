@@ -12,12 +12,14 @@ from standoff.bodies.boundary import Boundary
 from standoff.bodies.topology import Edge, Face
 from standoff.checks.arrays import finite
 from standoff.geometry.surfaces import Surface
-from standoff.motion import PoseLike
+from standoff.motion import Pose, PoseLike
 from standoff.solids.answer import SolidProximity
 from standoff.solids.plotted import Plotted, checked_answer
 from standoff.solids.spatial.distance import spatial_distance
+from standoff.solids.spatial.models import as_model
+from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.solid_model import SolidModel, as_model
+from standoff.solids.spatial.solid_model import SolidModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,12 +29,12 @@ class Solid(SolidModel, Plotted):
     """A solid that need not be convex, in its own frame.
 
     It wraps a `Boundary`, or a `Body`, whose faces may bend either way and have holes, and whose
-    inner shells are cavities.
+    inner shells are cavities. Of a `Body` with a radius it has the boundary that is swept.
 
     Parameters
     ----------
     boundary : Boundary or Body
-        Spatial, bounded, with faces and without a radius.
+        Spatial and bounded, with faces or a radius.
     volume, area : float, optional
         Of the maker, length cubed and squared: compared with those of the boundary.
     relative : float, optional
@@ -115,11 +117,17 @@ class Solid(SolidModel, Plotted):
         self, a: Any, b: Any, answer: Any, view: tuple[float, float] | None, unit: str
     ) -> Figure:
         """The picture that ``so.plot`` makes of two solids, of which this is one; see `Plotted`."""
-        from standoff.solids.drawing.spatial_picture import pair_figure
+        from standoff.solids.drawing.spatial_picture import Pictured, pair_figure
 
-        one, other = as_model(a), as_model(b)
-        names, told = (one.name, other.name), checked_answer(answer)
-        return pair_figure((one.boundary, other.boundary), names, told, view, unit)
+        told = checked_answer(answer)
+        poses = (Pose(row[:9].reshape(3, 3), row[9:]) for row in told.poses)
+        pair = PlacedPair(as_model(a), as_model(b), *poses)
+        features = told.feature_a, told.feature_b
+        one, other = (
+            Pictured(solid.boundary, solid.name, frame, solid.part_told(feature))
+            for solid, frame, feature in zip((pair.a, pair.b), pair.frames, features, strict=True)
+        )
+        return pair_figure((one, other), told, view, unit)
 
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside the solid or on its boundary.

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,15 @@ from standoff.bodies.features import Feature
 from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
+from standoff.kernels.solids import spatial_layout as S
+from standoff.motion.pose import Pose
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
 from standoff.wording import printable
+
+if TYPE_CHECKING:
+    from standoff.bodies.rounding.parts import Origin
 
 
 class SolidModel:
@@ -26,6 +31,8 @@ class SolidModel:
     Attributes
     ----------
     boundary : Boundary
+        Of a body with a radius the one that is swept, whose faces, edges and vertices are not the
+        body's own: `feature_of` and `parameters_of` tell the body's, `part_of` the boundary's.
     own, numbers : arrays
         Its leaves and their tree, as ``kernels.solids.spatial_layout`` lays them out.
     leaves : list of Leaf
@@ -47,14 +54,13 @@ class SolidModel:
             raise StandoffError(
                 f"Solid of {boundary!r}: give a Boundary or a Body.", "boundary", boundary
             )
-        whole = boundary.dimension == 3 and boundary.bounded and boundary.face_parts
-        if not whole or boundary.radius != 0.0:
-            raise StandoffError(
-                f"{boundary!r} is not a bounded, unrounded body with faces in space: a Solid "
-                "encloses a volume.",
-                "boundary",
-                boundary,
-            )
+        check_solid(boundary)
+        self._given = boundary
+        self._origins: dict[Feature, Origin] = {}
+        if isinstance(boundary, Body) and boundary.radius:
+            from standoff.bodies.rounding.build import rounded_boundary
+
+            boundary, self._origins = rounded_boundary(boundary)
         self.boundary = boundary
         self._compare("volume", volume, relative)
         self._compare("area", area, relative)
@@ -85,7 +91,7 @@ class SolidModel:
 
     @property
     def name(self) -> str:
-        return self.boundary.name
+        return self._given.name
 
     @property
     def dimension(self) -> int:
@@ -114,19 +120,55 @@ class SolidModel:
     @property
     def slack(self) -> float:
         """How far the boundary may be from the one that was given, length."""
-        return float(self.report.slack)
+        rounded = self._given is not self.boundary
+        return float(self.report.slack + (self._given.report.slack if rounded else 0.0))
 
     @property
     def packed(self) -> tuple[NDArray[np.int64], Array, NDArray[np.int64], Array]:
         """What the kernels read."""
         return self.boundary.ints, self.boundary.reals, self.own, self.numbers
 
-    def feature_of(self, leaf: int) -> Feature:
-        """The face, edge or vertex of a leaf."""
+    def part_of(self, leaf: int) -> Feature:
+        """The face, edge or vertex of the boundary that a leaf is of."""
         part: Leaf = self.leaves[leaf]
         first = (0, self.boundary.n_faces, self.boundary.n_faces + self.boundary.n_edges)
         names = ("face", "edge", "vertex")
         return Feature(names[2 - part.dim], part.feature - first[2 - part.dim])
+
+    def feature_of(self, leaf: int) -> Feature:
+        """The face, edge or vertex of a leaf; of a body with a radius that of its core."""
+        part = self.part_of(leaf)
+        return self._origins[part].feature if self._origins else part
+
+    def parameters_of(self, leaf: int, values: Array) -> tuple[float, ...]:
+        """(u, v) of a face, (t,) of an edge, () of a vertex, from a leaf's own; of a body with a
+        radius those of its core."""
+        if self._origins:
+            return self._origins[self.part_of(leaf)].parameters(values)
+        return tuple(float(x) for x in values[: self.leaves[leaf].dim])
+
+    def part_told(self, feature: Feature) -> Feature:
+        """A part of the boundary that `feature_of` tells as a feature."""
+        told = (part for part, origin in self._origins.items() if origin.feature == feature)
+        return next(told, feature)
+
+    def placed(self, pose: Pose) -> tuple[Array, Array]:
+        """(rotation, shift) of its boundary's frame in the world."""
+        return np.asarray(pose.rotation), np.asarray(pose.translation)
+
+    def may_hold(self, point: Array) -> bool:
+        """Is a point, own frame, in the box at the root of the tree?"""
+        o = int(self.own[S.R_NODES])
+        node = self.numbers[o : o + S.NODE_REALS]
+        axes = node[S.AXES : S.AXES + 9].reshape(3, 3)
+        away = np.abs(axes @ (point - node[S.CENTRE : S.CENTRE + 3]))
+        return bool((away <= node[S.HALF : S.HALF + 3]).all())
+
+    def ball_round(self) -> tuple[Array, float]:
+        """(centre, radius) of a ball round it, own frame, length."""
+        o = int(self.own[S.R_NODES])
+        node = self.numbers[o : o + S.NODE_REALS]
+        return node[S.CENTRE : S.CENTRE + 3], float(np.linalg.norm(node[S.HALF : S.HALF + 3]))
 
     def __repr__(self) -> str:
         b = self.boundary
@@ -136,16 +178,17 @@ class SolidModel:
         )
 
 
-def as_model(given: Any) -> SolidModel:
-    """A `Solid` as it is, a `Boundary` or `Body` as a solid."""
-    if isinstance(given, SolidModel):
-        return given
-    if isinstance(given, Boundary | Body):
-        return _made_once(given)
-    raise StandoffError(f"{given!r} is no Solid, Boundary or Body.", "solid", given)
-
-
-@lru_cache(maxsize=64)
-def _made_once(boundary: Boundary) -> SolidModel:
-    """A body is asked again and again, and its leaves take a second."""
-    return SolidModel(boundary)
+def check_solid(boundary: Boundary) -> None:
+    """Raise StandoffError for what encloses no volume, or not all of it."""
+    if boundary.dimension != 3:
+        why = "is planar: a Solid encloses a volume; so.PlanarSolid takes it"
+    elif not boundary.bounded:
+        why = "is not bounded: give it to so.solids.distance or a world as it is"
+    elif not (boundary.face_parts or boundary.radius):
+        why = (
+            "has no volume: a radius makes it a ball or a capsule, and signed_distance of a solid "
+            "tells how far points are"
+        )
+    else:
+        return
+    raise StandoffError(f"{boundary!r} {why}.", "boundary", boundary)

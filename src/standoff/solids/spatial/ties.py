@@ -9,7 +9,9 @@ from itertools import product
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.answer import Continuum
+from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.tolerances import (
@@ -66,18 +68,24 @@ def continuum_of(
 
 
 def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
-    """Places of pairs of leaves with the most parameters first; among them those of features that
-    have the most places in common."""
+    """Places of pairs of leaves with the most parameters first; among them those of planes, and
+    then those of features that have the most places in common."""
     leaves = [
         (pair.a.leaves[int(place.row[1])], pair.b.leaves[int(place.row[2])]) for place in places
     ]
     features = [(one.feature, other.feature) for one, other in leaves]
     often = Counter(features)
     ranks = [
-        (-one.dim - other.dim, -often[both])
+        (-one.dim - other.dim, -_planes(one, other), -often[both])
         for (one, other), both in zip(leaves, features, strict=True)
     ]
     return [places[k] for k in sorted(range(len(places)), key=lambda k: ranks[k])]
+
+
+def _planes(*leaves: Leaf) -> int:
+    """How many are of planes: what is parallel to one is near it all over, and the strips and
+    corners beside a plane are as near at their ends only."""
+    return sum(leaf.dim == 2 and leaf.kind == TORUS_THROUGH for leaf in leaves)
 
 
 def _others(

@@ -73,9 +73,12 @@ class Packed(NamedTuple):
     edges_sampled: tuple[int, ...]
 
 
-def packed_leaves(boundary: Boundary) -> Packed:
-    """The leaves of a boundary and the tree over them."""
+def packed_leaves(boundary: Boundary, faces: tuple[int, ...] = ()) -> Packed:
+    """The leaves of a boundary and the tree over them; of some faces, without their edges, where
+    `faces` names these."""
     leaves, pieces, sampled = all_leaves(boundary)
+    if faces:
+        leaves = [leaf for leaf in leaves if leaf.dim == 2 and leaf.feature in faces]
     nodes = _grown(leaves)
     ints, reals = list(range(S.INT_HEADER)), np.zeros(S.REAL_HEADER)
     lists: list[int] = []

@@ -12,7 +12,7 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import chart_row
 from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line
-from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_box
+from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_bends, pcurve_boxes
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
@@ -107,8 +107,8 @@ def _pieces(boundary: PackedParts, chart: int, coedge: int) -> list[Piece]:
     ranges = [(float(a), float(b)) for a, b in pairwise(ends)]
     bounds = np.zeros((len(ranges), 4)) if curve is None else curve_derivatives(curve, ranges)
     found = []
-    for (a, b), d in zip(ranges, bounds, strict=True):
-        low, high, bend = _placed(boundary, kind, at, (first, last), (a, b))
+    boxes, bends = _boxes(boundary, kind, at, ends), _bends(boundary, kind, at, ends)
+    for (a, b), d, (low, high), bend in zip(ranges, bounds, boxes, bends, strict=True):
         straight = None
         if kind == L.LINE and (bend == 0.0).all():
             straight = np.array(
@@ -120,27 +120,35 @@ def _pieces(boundary: PackedParts, chart: int, coedge: int) -> list[Piece]:
     return found
 
 
-def _placed(
-    boundary: PackedParts, kind: int, at: int, whole: tuple[float, float], part: tuple[float, float]
-) -> tuple[Array, Array, Array]:
-    """(low, high) in (u, v) of a part, and its greatest second derivatives."""
-    unknown = np.full(2, np.inf)
+def _boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> list[tuple[Array, Array]]:
+    """(low, high) in (u, v) of each part of a packed trimming curve."""
     if kind == L.BEZIER:
-        count = 3 * (int(boundary.reals[at]) + 1)
-        points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-        a, b = ((t - whole[0]) / (whole[1] - whole[0]) for t in part)
-        own = segment(len(points) - 1, a, b) @ points
-        low, high = bezier_box(own)
-        bend = bezier_bend(own) / (part[1] - part[0]) ** 2
-        return low, high, bend * (1.0 + BEND_SPARE)
+        return [bezier_box(points) for points in _bezier_parts(boundary, at, ends)]
+    low, high = pcurve_boxes(kind, boundary.reals[at : at + 9].reshape(3, 3), ends)
+    return list(zip(low, high, strict=True))
+
+
+def _bezier_parts(boundary: PackedParts, at: int, ends: Array) -> list[Array]:
+    """Homogeneous points of the parts of a packed rational Bezier curve."""
+    count = 3 * (int(boundary.reals[at]) + 1)
+    points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
+    shares = (ends - ends[0]) / (ends[-1] - ends[0])
+    return [segment(len(points) - 1, a, b) @ points for a, b in pairwise(shares.tolist())]
+
+
+def _bends(boundary: PackedParts, kind: int, at: int, ends: Array) -> Array:
+    """(n, 2) greatest second derivatives of u and v along each part of a packed trimming curve."""
+    count = len(ends) - 1
+    if kind == L.BEZIER:
+        bends = np.array([bezier_bend(points) for points in _bezier_parts(boundary, at, ends)])
+        return bends / np.diff(ends)[:, None] ** 2 * (1.0 + BEND_SPARE)
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
-    low, high = pcurve_box(kind, matrix, *part)
     if (matrix[2, :2] != 0.0).any():
-        return low, high, unknown
+        return pcurve_bends(kind, matrix, ends)
     if kind == L.LINE:
-        return low, high, np.zeros(2)
+        return np.zeros((count, 2))
     bend = np.hypot(matrix[:2, 0], matrix[:2, 1]) / abs(float(matrix[2, 2]))
-    return low, high, bend * (1.0 + BEND_SPARE)
+    return np.tile(bend * (1.0 + BEND_SPARE), (count, 1))
 
 
 def edge_ranges(curve: Curve, arc: float, longest: float) -> list[tuple[float, float]]:
