@@ -39,3 +39,7 @@ to each other than this is tried with a potential about one of them."""
 NEARLY_STRAIGHT: Final = 1e-4
 """Cosine: a normal this near to an axis, or to across it, is taken to be so in a coaxial potential;
 the torus potential beside it keeps the normal as it is."""
+MAY_REACH: Final = 0.3
+"""Of the length below which faces meet: how far one may reach beyond the other's surface where it
+counts as on one side of it. It is more than a quarter, the slack of both, and less than the half to
+which parts are proven to be apart, so that no part that goes on from there counts as apart."""

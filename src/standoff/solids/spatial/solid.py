@@ -41,7 +41,13 @@ class Solid(SolidModel, Plotted):
     Raises
     ------
     StandoffError
-        A boundary of another kind, or a volume or an area that differs.
+        A boundary of another kind, a volume or an area that differs, or a boundary that crosses
+        itself; the error's `value` is then what `self_intersections` would be.
+
+    Attributes
+    ----------
+    self_intersections : SelfIntersections
+        Where faces meet away from the edges that join them, and how much of that is proven.
     """
 
     @staticmethod
