@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,12 +18,6 @@ from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
 from standoff.wording import printable
-
-if TYPE_CHECKING:
-    from standoff.solids.spatial.self_intersections import SelfIntersections
-
-# Places that a message names.
-MOST_NAMED = 3
 
 
 class SolidModel:
@@ -67,25 +61,6 @@ class SolidModel:
         self.own, self.numbers, self.leaves, self.edges_sampled = packed_leaves(boundary)
         self.references: Array | None = None
         self.vertex_normals: dict[int, Array | None] = {}
-        self._refuse_crossings()
-
-    def _refuse_crossings(self) -> None:
-        found = self.self_intersections
-        if found.crossings:
-            raise StandoffError(
-                f"{self.boundary!r} crosses itself: {'; '.join(found.lines()[:MOST_NAMED])}. Move "
-                "or trim one of the faces, or give a tolerance that the crossing is within.",
-                "boundary",
-                found,
-            )
-
-    @cached_property
-    def self_intersections(self) -> SelfIntersections:
-        """Where the boundary meets itself away from the edges that join its faces, and how much
-        is proven of that."""
-        from standoff.solids.spatial.self_intersections import self_intersections
-
-        return self_intersections(self)
 
     def _compare(self, name: str, given: float | None, relative: float) -> None:
         if given is None:
