@@ -225,3 +225,30 @@ def write_assembly(path: Path, names: tuple[str, str, str]) -> Path:
     writer.Transfer(document)
     writer.Write(str(path))
     return path
+
+
+def drilled_ball(radius: float, *holes: tuple[float, ...]) -> Any:
+    """A ball about the origin with round holes off its centre, each (start, direction, radius): its
+    face has both poles, and edges that are no circles."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    tools = [
+        BRepPrimAPI_MakeCylinder(
+            gp_Ax2(gp_Pnt(*hole[:3]), gp_Dir(*hole[3:6])), hole[6], 4.0 * radius
+        ).Shape()
+        for hole in holes
+    ]
+    return cut(BRepPrimAPI_MakeSphere(radius).Shape(), *tools)
+
+
+def crossing_shells() -> Any:
+    """A box of 2 x 2 x 2 with a shell inside as a cavity, which pokes through its side x = 2."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Solid
+
+    builder, solid = BRep_Builder(), TopoDS_Solid()
+    builder.MakeSolid(solid)
+    builder.Add(solid, explored(box(2, 2, 2), "shell")[0])
+    builder.Add(solid, explored(box(1.2, 1, 1, (1.0, 0.5, 0.5)), "shell")[0].Reversed())
+    return solid

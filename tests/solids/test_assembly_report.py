@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,14 @@ import standoff as so
 from standoff.clearance.assembly import AssemblyFile
 from standoff.clearance.fits import Fit
 from standoff.clearance.page import page_of
+from standoff.clearance.picture import pairs_legend, undecided_gap
 from standoff.clearance.report import (
     Looked,
     Report,
     Wanted,
     bounds_of,
     nearest_of,
+    no_clearance,
     report_on,
 )
 from standoff.clearance.verdicts import Verdict
@@ -113,3 +116,39 @@ def test_the_page_names_and_draws_the_parts(
     ):
         assert part in text
     assert "at 0 s" not in text
+
+
+def test_an_undecided_pair_is_told_as_one(tmp_path: Path) -> None:
+    """A pin that fills its hole touches all round: nothing parts it, and no ball is inside both."""
+    parts = {"plate": plate(8.0, 1.0, 1.0).boundary, "bolt": PARTS["bolt"], "ring": PARTS["ring"]}
+    world = so.World(parts, within=10.0)
+    answer = world.distances({name: PLACES[name] for name in parts})
+    near = nearest_of(answer, 0.0)
+    report = report_on(world, near, bounds_of(world, answer, near), Wanted())
+    (row,) = [row for row in report.rows if row.verdict is Verdict.UNDECIDED]
+    assert row.names == ("plate", "bolt")
+    assert report.clearance == -np.inf
+    assert no_clearance(report) == "none is proven: whether these meet is not decided: plate - bolt"
+    labels = [str(handle.get_label()) for handle in pairs_legend(report.rows, "mm")]
+    assert labels[0].startswith("1  plate - bolt: undecided, gap at most ")
+    assert labels[1].startswith("2  bolt - ring: gap 0.2 mm")
+    file = AssemblyFile(Path("assembly.step"), "A pin", "mm", (), PLACES)
+    text = page_of(file, report, Looked(0.0, 0.0, 1))
+    (tmp_path / "page.html").write_text(text)
+    assert (
+        "clearance of all pairs none is proven: whether these meet is not decided: plate - bolt"
+        in text
+    )
+    assert "overlap" not in text.split("</p>")[0].split('class="summary">')[1]
+
+
+def test_an_undecided_pair_with_bounds_shows_them(
+    found: tuple[so.World, so.world.WorldAnswer],
+) -> None:
+    report = reported(found, Wanted(None, None))
+    row = next(row for row in report.rows if row.names == ("plate", "bolt"))
+    between = replace(row, nearest=row.nearest._replace(lower_bound=-0.25))
+    assert undecided_gap(between, "mm") == "undecided, gap -0.25 to 0.1 mm"
+    open_one = replace(between, verdict=Verdict.UNDECIDED)
+    both = replace(report, rows=(open_one, *report.rows))
+    assert "one is inside another's material; whether these meet" in no_clearance(both)

@@ -1,4 +1,4 @@
-"""Solids that touch all round, and those that only seem to: what is proven where nothing parts them."""
+"""Solids that touch all round, and those that only seem to."""
 
 from __future__ import annotations
 

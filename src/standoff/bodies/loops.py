@@ -115,6 +115,8 @@ def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
     """Which loops run clockwise around the face as they were given."""
     round_ = [loop for loop in loops if loop.turns]
     collapsed = [c for c in chart.coedges if c.edge < 0]
+    if not round_ and _closed(chart, collapsed):
+        return [loop.area > 0.0 for loop in loops]  # holes, all of them
     if not round_:
         outer = max(loops, key=lambda loop: abs(loop.area))
         sides = [np.stack([p[:-1], p[1:]], 1) for p in map(_points, collapsed)]
@@ -138,6 +140,14 @@ def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
         "between two of them, or between one and an apex.",
         part=("face", number),
     )
+
+
+def _closed(chart: Chart, collapsed: Sequence[Coedge]) -> bool:
+    """Is a face all of a surface between two collapsed sides that go once around it, such as a
+    sphere by longitude and latitude, but for holes?"""
+    around = [abs(c.pcurve.point(c.last)[0] - c.pcurve.point(c.first)[0]) for c in collapsed]
+    whole = sum(round(turn / (2.0 * np.pi)) for turn in around)
+    return bool(chart.surface.periodic) and whole == 2
 
 
 def _loop(chart: Chart, entries: tuple[int, ...]) -> Loop:

@@ -44,6 +44,8 @@ class PartReport:
         Proven bound of the part of it that comes from trimming curves, length.
     tolerance : float
         Greatest tolerance that the file gives an edge or a vertex, length.
+    self_intersections : tuple of str
+        What was found of places where its boundary meets itself; empty of a convex part.
     healed : tuple of str
         What healing changed; empty unless it was asked for.
     refused : str
@@ -66,6 +68,7 @@ class PartReport:
     slack: float = 0.0
     trim_bound: float = 0.0
     tolerance: float = 0.0
+    self_intersections: tuple[str, ...] = ()
     healed: tuple[str, ...] = ()
     refused: str = ""
     notes: tuple[str, ...] = ()
@@ -89,6 +92,7 @@ class PartReport:
             f"  trimming curves: {trims or 'none'}; faces cut in two: {self.cut}; "
             f"{self.seconds:.2f} s",
         ]
+        found += [f"  {one}" for one in self.self_intersections]
         found += [f"  healed: {one}" for one in self.healed]
         return found + [f"  {note}" for note in self.notes]
 
@@ -108,6 +112,8 @@ class Part:
     colour : (red, green, blue, opacity) or None
         Each within [0, 1], as in the file.
     report : PartReport
+    made : Solid, optional
+        The shape as a `Solid`, where it is made already.
     """
 
     name: str
@@ -115,13 +121,14 @@ class Part:
     pose: Array
     colour: tuple[float, float, float, float] | None
     report: PartReport
+    made: Solid | None = None
 
     @cached_property
     def solid(self) -> Solid:
         """The shape as a `Solid`, for distances of parts that need not be convex; made once."""
         from standoff.solids import Solid
 
-        return Solid(self.shape)
+        return Solid(self.shape) if self.made is None else self.made
 
 
 @dataclass(frozen=True, eq=False)

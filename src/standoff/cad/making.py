@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, replace
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -41,16 +41,20 @@ from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.validation import Array
 
+if TYPE_CHECKING:
+    from standoff.solids import SelfIntersection, Solid
+
 # Places that a message names.
 MOST_NAMED = 4
 
 
 @dataclass(frozen=True)
 class Made:
-    """A part, or None where it was refused, and what was found."""
+    """A part, or None where it was refused, and what was found; with its solid, if it was made."""
 
     shape: Boundary | Body | None
     report: PartReport
+    solid: Solid | None = None
 
 
 def made_part(shape: Any, name: str, heal: bool) -> Made:
@@ -61,18 +65,18 @@ def made_part(shape: Any, name: str, heal: bool) -> Made:
         shape, told = healed(shape)
     report = PartReport(name, _kinds(shape), healed=told, tolerance=tolerance_of(shape))
     try:
-        made, report = _made(shape, report)
+        made, report, solid = _made(shape, report)
     except (StandoffError, RuntimeError) as error:
         spent = perf_counter() - start
         return Made(None, replace(report, refused=str(error), seconds=spent))
-    return Made(made, replace(report, seconds=perf_counter() - start))
+    return Made(made, replace(report, seconds=perf_counter() - start), solid)
 
 
 def _kinds(shape: Any) -> dict[str, int]:
     return dict(Counter(kind_of(face) for face in explored(shape, "face")))
 
 
-def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport]:
+def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport, Solid | None]:
     size = size_of(shape)
     _check(shape, size)
     solid, cut = without_seams(shape)
@@ -103,6 +107,7 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport]:
     if abs(found.volume - volume) > near:
         raise Refused(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")
     body = _convex(boundary, pieces, joined)
+    solid = _not_crossing(boundary, pieces) if body is None else None
     report = replace(
         report,
         cut=cut,
@@ -115,8 +120,33 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport]:
         volume_error=off,
         slack=found.slack if body is None else body.check().slack,
         trim_bound=bound,
+        self_intersections=() if solid is None else tuple(solid.self_intersections.lines()),
     )
-    return body or boundary, report
+    return body or boundary, report, solid
+
+
+def _not_crossing(boundary: Boundary, pieces: Pieces) -> Solid:
+    """The solid of a boundary; raises Refused if it crosses itself."""
+    from standoff.solids import SelfIntersections, Solid
+
+    try:
+        return Solid(boundary)
+    except StandoffError as error:
+        if not isinstance(error.value, SelfIntersections):
+            raise
+        found = error.value.crossings
+        told = [_crossing(place, pieces) for place in found[:MOST_NAMED]]
+        dots = "; ..." if len(found) > MOST_NAMED else ""
+        raise Refused(f"it crosses itself: {'; '.join(told)}{dots}") from error
+
+
+def _crossing(place: SelfIntersection, pieces: Pieces) -> str:
+    one, other = (
+        f"face {feature.index + 1} (a {pieces.kinds[feature.index]})"
+        for feature in (place.feature_a, place.feature_b)
+    )
+    x, y, z = place.point_a
+    return f"{one} crosses {other} near ({x:.6g}, {y:.6g}, {z:.6g}), by about {place.depth:.3g}"
 
 
 def _check(shape: Any, size: float) -> None:

@@ -40,8 +40,8 @@ def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     ------
     CadError
         A file that is empty, cut off, damaged, or has more than ``MOST_ENTITIES`` entities; a part
-        that is refused: an open shell, faces without area, that cross themselves or have no exact
-        form.
+        that is refused: an open shell, faces without area, that cross themselves or each other, or
+        have no exact form.
     FileNotFoundError
     ModuleNotFoundError
         If OpenCASCADE is not installed; the message names the extra.
@@ -208,7 +208,8 @@ def _assembly(
         if made.shape is None:
             refusals.append(f"{instance.name}: {made.report.refused}")
             continue
-        parts.append(Part(instance.name, made.shape, instance.pose, instance.colour, made.report))
+        placed = instance.name, made.shape, instance.pose, instance.colour
+        parts.append(Part(*placed, made.report, made.solid))
     if not parts and not refusals:
         raise CadError(f"{source} has no solid with faces.")
     if refusals and (keep == "all" or not parts):

@@ -17,14 +17,15 @@ from standoff.clearance.assembly import AssemblyFile, Source
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
 from standoff.clearance.report import (
-    NO_CLEARANCE,
     Looked,
     Report,
     Row,
     Wanted,
     at_least,
     nearest_of,
+    no_clearance,
     report_on,
+    undecided,
 )
 from standoff.motion import Pose
 from standoff.scene.reader import Array
@@ -142,8 +143,10 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         f"{counted(len(report.world.bodies), 'body', 'bodies')}, {when}: {verdicts}.",
         f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}."
         if report.clearance > -math.inf
-        else f"Of the clearance of all pairs {NO_CLEARANCE}.",
+        else f"Of the clearance of all pairs {escape(printable(no_clearance(report)))}.",
     ]
+    if report.clearance > -math.inf and undecided(report):
+        lines.append(f"But {escape(printable(undecided(report)))}.")
     if report.failures:
         failing = counted(len(report.failures), "pair")
         lines.append(f"<strong>{failing} not proven to keep what is asked.</strong>")

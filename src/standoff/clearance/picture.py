@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from graphlib import CycleError, TopologicalSorter
@@ -270,6 +271,17 @@ def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
             told = "touching"
         if row.verdict is Verdict.CONTAINED:
             told = f"inside, wall {gap:.4g} {unit}".rstrip()
+        if row.verdict is Verdict.UNDECIDED:
+            told = undecided_gap(row, unit)
         label = f"{number}  {a} - {b}: {told}"
         handles.append(Line2D([], [], color="black", marker="o", markersize=3.5, label=label))
     return handles
+
+
+def undecided_gap(row: Row, unit: str) -> str:
+    """What is known of a pair that is not decided: the interval of its gap, below 0 a depth."""
+    low, high = row.nearest.lower_bound, row.answer.upper_bound
+    unit = f" {unit}" if unit else ""
+    if low == -math.inf:
+        return f"undecided, gap at most {high:.4g}{unit}"
+    return f"undecided, gap {low:.4g} to {high:.4g}{unit}"

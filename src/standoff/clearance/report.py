@@ -266,8 +266,27 @@ def at_least(bound: float, digits: int = 6) -> str:
     return text
 
 
-NO_CLEARANCE = "none is proven: solids overlap, or one is inside another's material"
-"""Said in place of a clearance without a bound."""
+MET = "solids overlap, or one is inside another's material"
+MOST_NAMED = 3
+"""Pairs that a sentence names."""
+
+
+def no_clearance(report: Report) -> str:
+    """Said in place of a clearance without a bound: why there is none."""
+    told = undecided(report)
+    deep = (Verdict.OVERLAPPING, Verdict.CONTAINED)
+    met = not told or any(row.verdict in deep for row in report.rows)
+    return "none is proven: " + "; ".join([MET] * met + [told] * bool(told))
+
+
+def undecided(report: Report) -> str:
+    """Which pairs are undecided, in words; empty where none is."""
+    rows = [row for row in report.rows if row.verdict is Verdict.UNDECIDED]
+    if not rows:
+        return ""
+    named = ", ".join(" - ".join(row.names) for row in rows[:MOST_NAMED])
+    more = f" and {len(rows) - MOST_NAMED} more" if len(rows) > MOST_NAMED else ""
+    return f"whether these meet is not decided: {named}{more}"
 
 
 def not_kept(required: float, lower: float) -> str:

@@ -44,6 +44,7 @@ def solid_rows(solid: Solid, unit: str) -> Rows:
             f"{report.sewing_tolerance:.3g} {unit}",
         ),
         ("slack", f"{report.slack:.3g} {unit}, taken off the certified lower bound"),
+        *(("boundary", line) for line in solid.self_intersections.lines(unit)),
         *(("note", note) for note in report.notes),
     ]
 

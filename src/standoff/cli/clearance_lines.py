@@ -13,7 +13,7 @@ from rich.text import Text
 
 from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.assembly import AssemblyFile, Source
-from standoff.clearance.report import NO_CLEARANCE, Looked, Report, Row, at_least
+from standoff.clearance.report import Looked, Report, Row, at_least, no_clearance
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
 from standoff.cli.terminal import tell
@@ -139,7 +139,7 @@ def _tail(
     told = ", ".join(f"{n} {verdict.name}" for verdict, n in report.tally().items() if n)
     lines.append(line("verdicts", told or "no pair counts"))
     told = f"{_clearance(report)} {unit}, proven for all pairs"
-    lines.append(line("clearance", told if report.clearance > -math.inf else NO_CLEARANCE))
+    lines.append(line("clearance", told if report.clearance > -math.inf else no_clearance(report)))
     lines += _certified(report, looked)
     for k, (names, failure) in enumerate(report.failures):
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))

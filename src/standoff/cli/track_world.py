@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.clearance.facts import report_facts
 from standoff.clearance.over_time import LeastOfAll, Walked, bounds_over, frames
-from standoff.clearance.report import NO_CLEARANCE, Report, Wanted, at_least, report_on
+from standoff.clearance.report import Report, Wanted, at_least, no_clearance, report_on
 from standoff.cli.arguments import TrackCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, world_facts
@@ -151,7 +151,7 @@ def _lines(
             f"{at_least(float(walked.clearance[k]))} {unit} at "
             f"{time_text(walked.times[k])}, proven for all pairs in all frames"
             if walked.clearance[k] > -np.inf
-            else f"{NO_CLEARANCE}, at {time_text(walked.times[k])}",
+            else f"{no_clearance(report)}, at {time_text(walked.times[k])}",
         ),
         *(line("closest" if i == 0 else "", text) for i, text in enumerate(shown)),
         *([line("", f"and {counted(more, 'more pair')}")] if more else []),

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from standoff.solids.planar.solid import PlanarSolid
     from standoff.solids.query import distance
     from standoff.solids.spatial.points import PointDistances
+    from standoff.solids.spatial.self_intersections import SelfIntersection, SelfIntersections
     from standoff.solids.spatial.solid import Solid
 else:
     __getattr__, __dir__ = on_demand(
@@ -36,6 +37,10 @@ else:
             "standoff.solids.planar.solid": ("PlanarSolid",),
             "standoff.solids.query": ("distance",),
             "standoff.solids.spatial.points": ("PointDistances",),
+            "standoff.solids.spatial.self_intersections": (
+                "SelfIntersection",
+                "SelfIntersections",
+            ),
             "standoff.solids.spatial.solid": ("Solid",),
         },
     )
@@ -47,6 +52,8 @@ __all__ = [
     "Overlap",
     "PlanarSolid",
     "PointDistances",
+    "SelfIntersection",
+    "SelfIntersections",
     "Solid",
     "SolidCounts",
     "SolidProximity",

@@ -2,7 +2,7 @@
 
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.decorators import entry, kernel, pointer, reals_on_stack
 from standoff.kernels.compiler.entry import BOOL, INT, INTS, READ, WRITE, WRITE_INTS
 from standoff.kernels.pair.derivatives import write_gradient
 from standoff.kernels.solids import spatial_layout as S
@@ -11,10 +11,18 @@ from standoff.kernels.solids.spatial_closing import along
 from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid
 from standoff.kernels.solids.spatial_search import search
+from standoff.kernels.solids.spatial_self import (
+    FOUND_REALS,
+    JOINT_REALS,
+    Joint,
+    meet,
+    near_leaves,
+)
 from standoff.kernels.values import Pose
 
 # Packed boundary, then leaves and tree; pose in A's frame (R, p).
 SOLID = types.Tuple((INTS, READ, INTS, READ))
+STILL = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -38,8 +46,7 @@ CLOSING = 2048
 def boundary_distance(solids, pose, senses, best, minima, room, counts):
     """Of two solids, B at a pose in A's frame, each seen from outside or inside (`senses`); `best`
     says how far and how to search."""
-    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    a, b = side_at(solids[0], still, senses[0]), side_at(solids[1], pose, senses[1])
+    a, b = side_at(solids[0], STILL, senses[0]), side_at(solids[1], pose, senses[1])
     work, nodes, keys = room
     limit = len(keys)
     heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, limit), limit)
@@ -61,8 +68,7 @@ def solid_point(solid, pose, leaf, u, v, out):
 def nearest_in_leaves(solids, pose, leaves, values, counts):
     """From the parameters values[:4] of two leaves to those of a local minimum, and the distance in
     values[4]."""
-    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    a, b = side_at(solids[0], still, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
     start = (values[0], values[1], values[2], values[3])
     box_a, box_b = leaf_box(a, leaves[0]), leaf_box(b, leaves[1])
     q, distance = nearest(a, leaves[0], box_a, b, leaves[1], box_b, start, pointer(counts, 0))
@@ -77,8 +83,7 @@ def nearest_in_leaves(solids, pose, leaves, values, counts):
 def part_extents(solid, axes, leaf, box, out):
     """Into out[:3] a part's middle point, own frame, and into out[3:6] how far it reaches from it
     along three axes (9 numbers) at most; `box` is the part's."""
-    still = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-    side = side_at(solid, still, S.OUTSIDE)
+    side = side_at(solid, STILL, S.OUTSIDE)
     h = (0.5 * (box[1] - box[0]), 0.5 * (box[3] - box[2]))
     jet = leaf_jet(side, leaf, 0.5 * (box[0] + box[1]), 0.5 * (box[2] + box[3]))
     for k in range(3):
@@ -111,3 +116,25 @@ def gradient(arms, flat, to):
     n = (arms[0], arms[1], arms[2])
     arm_a, arm_b = (arms[3], arms[4], arms[5]), (arms[6], arms[7], arms[8])
     write_gradient(n, arm_a, arm_b, flat, pointer(to, 0))
+
+
+@entry(SOLID, types.float64, WRITE_INTS, WRITE_INTS, work="solids")
+def near_own_leaves(solid, within, stack, pairs):
+    """List the pairs of a solid's leaves of faces whose boxes are within a length; pairs[-1]
+    is how many there are, of which those that have room are listed."""
+    side = side_at(solid, STILL, S.EITHER)
+    most = (len(pairs) - 1) // 2
+    pairs[-1] = near_leaves(side, within, pointer(stack, 0), pointer(pairs, 0), most)
+
+
+@entry(SOLID, INTS, READ, WRITE, WRITE, WRITE, WRITE_INTS, work="solids")
+def meet_own_leaves(solid, pairs, joint, best, work, found, counts):
+    """Of each pair of a solid's leaves whether they meet away from the points of a joint."""
+    side = side_at(solid, STILL, S.OUTSIDE)
+    sides = reals_on_stack(2)
+    sides[0], sides[1] = 0.0, 0.0
+    spots = Joint(pointer(joint, 0), len(joint) // JOINT_REALS, sides)
+    for k in range(len(pairs) // 2):
+        out = pointer(found, FOUND_REALS * k)
+        meet(side, pairs[2 * k], pairs[2 * k + 1], spots, pointer(best, 0), pointer(work, 0),
+             pointer(counts, 0), out)  # fmt: skip

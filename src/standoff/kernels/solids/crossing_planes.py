@@ -5,7 +5,7 @@ from math import inf
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import axpy, cross, dot, norm, scale, sub
-from standoff.kernels.compiler.decorators import kernel, reals_on_stack
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.over_plane import is_plane_leaf
 from standoff.kernels.solids.spatial_pieces import OUTSIDE_TRIM, leaf_jet, trim_state
@@ -59,7 +59,7 @@ def off_the_face(part, line, s0, s1):
     return trim_state(part.side, part.leaf, near) == OUTSIDE_TRIM
 
 
-@kernel
+@shared
 def planes_apart(a, b, size):
     """Are two pieces of planes, whose normals are not opposite, proven to have no common point?
 

@@ -13,7 +13,7 @@ from standoff.kernels.body.features import (
     moved_jet,
 )
 from standoff.kernels.body.trimming import on_face
-from standoff.kernels.compiler.decorators import kernel, reals_on_stack
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.quadratic_max import line_max, quadratic_max, widened
 from standoff.kernels.solids.round_axis import arc_data, axis_data, round_axis_greatest
@@ -289,7 +289,7 @@ def settled(phi, sign, most, part, data, q):
     return -1 if value > most else 0
 
 
-@kernel
+@shared
 def proven(phi, sign, most, part, q, limit, counts):
     """Is sign phi at most `most` all over the solid's piece that is in a part? Its greatest value
     is expected near the parameters q; `limit` boxes are looked at."""

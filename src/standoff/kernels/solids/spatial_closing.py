@@ -3,7 +3,7 @@
 from math import inf
 
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.coaxial import coaxial_between, common_axis
 from standoff.kernels.solids.spatial_bounds import proven
@@ -74,14 +74,14 @@ def held_along(part, jet, toward, u, v):
     return mu, mv
 
 
-@kernel
+@shared
 def by_own_surface(goal, a, b, q, limit, counts):
     """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
     known, phi = natural(a.side, a.leaf)
     return known and proven(phi, -1.0, -goal, b, q, limit, counts)
 
 
-@kernel
+@shared
 def by_witness(goal, a, b, at, limit, best, counts):
     """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
     wa, wb, q = at

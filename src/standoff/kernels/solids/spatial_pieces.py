@@ -159,7 +159,7 @@ def piece_meets(side, piece, box):
     return False
 
 
-@kernel
+@shared
 def trim_state(side, leaf, box):
     """Is a box of a face's parameters outside the face, on it, or cut by its trimming curves?"""
     r = leaf_ints(side, leaf)

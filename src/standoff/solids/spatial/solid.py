@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.topology import Edge, Face
 from standoff.checks.arrays import finite
+from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.motion import Pose, PoseLike
 from standoff.solids.answer import SolidProximity
@@ -19,10 +20,14 @@ from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.points import signed_distances
+from standoff.solids.spatial.self_intersections import SelfIntersections, self_intersections
 from standoff.solids.spatial.solid_model import SolidModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+# Places that a message names.
+MOST_NAMED = 3
 
 
 class Solid(SolidModel, Plotted):
@@ -43,8 +48,33 @@ class Solid(SolidModel, Plotted):
     Raises
     ------
     StandoffError
-        A boundary of another kind, or a volume or an area that differs.
+        A boundary of another kind, a volume or an area that differs, or a boundary that crosses
+        itself; the error's `value` is then what `self_intersections` would be.
+
+    Attributes
+    ----------
+    self_intersections : SelfIntersections
+        Where faces meet away from the edges that join them, and how much of that is proven.
     """
+
+    def __init__(
+        self,
+        boundary: Boundary,
+        *,
+        volume: float | None = None,
+        area: float | None = None,
+        relative: float = 1e-6,
+    ) -> None:
+        super().__init__(boundary, volume=volume, area=area, relative=relative)
+        self.self_intersections: SelfIntersections = self_intersections(self)
+        if self.self_intersections.crossings:
+            told = "; ".join(self.self_intersections.lines()[:MOST_NAMED])
+            raise StandoffError(
+                f"{boundary!r} crosses itself: {told}. Move or trim one of the faces, or give a "
+                "tolerance that the crossing is within.",
+                "boundary",
+                self.self_intersections,
+            )
 
     @staticmethod
     def from_brep(

@@ -93,7 +93,7 @@ def _others(
 ) -> list[tuple[Array, Array]]:
     """Pairs (x, y) in the leaves of a place at the least distance, more than a little away."""
     found = []
-    for start in _starts(pair, place.row):
+    for start in starts(pair, place.row):
         row = pair.found_from(place.row, start)
         if row is None or row[0] > most:
             continue
@@ -107,7 +107,7 @@ def _others(
     return found
 
 
-def _starts(pair: PlacedPair, row: Array) -> Iterator[Array]:
+def starts(pair: PlacedPair, row: Array) -> Iterator[Array]:
     """Parameters at the corners of one leaf and the middles of its sides, those of the other held,
     and the other way round."""
     q = row[3:7]

@@ -84,3 +84,17 @@ by `ONE_AXIS`, in the turn of an edge."""
 BESIDE_CONTACT: Final = 1e-6
 """Of the sizes: around a part of a boundary that the other one holds, how far one potential has to
 be between both; far more than the tolerance, far less than a part."""
+MEETING: Final = 1e-9
+"""Of the size: two faces of one boundary that come nearer than this meet; what parts may miss each
+other by (`JOIN_TOLERANCE`)."""
+MEETING_SLACKS: Final = 4.0
+"""Times the slack: the same where the boundary is not known better; both faces have it, on either
+side of where they are joined."""
+PROVEN_SHARE: Final = 0.5
+"""Of the length below which faces meet: how much nearer they may be where they are proven apart."""
+JOINT_PARTS: Final = 32
+"""Parts of an edge: nearer to it than one is long, faces that it joins are not looked at."""
+VERTEX_SHARE: Final = 1e-3
+"""Of the shortest edge at a vertex: nearer to it, faces that it joins are not looked at."""
+LEAST_ANGLE: Final = 1e-6
+"""Sine of the angle of two faces below which they touch rather than cross."""

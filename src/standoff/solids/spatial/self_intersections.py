@@ -1,0 +1,218 @@
+"""Where a solid's boundary meets itself away from where its faces are joined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from standoff.bodies.body import Body
+from standoff.bodies.features import Feature
+from standoff.geometry.validation import Array
+from standoff.kernels.entries.solids import meet_own_leaves
+from standoff.kernels.solids import spatial_self as K
+from standoff.motion.pose import Pose
+from standoff.solids.spatial.crossing_depth import crossing_depth
+from standoff.solids.spatial.minimum import Sought, started
+from standoff.solids.spatial.own_pairs import OwnPairs, own_pairs
+from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.ties import starts
+from standoff.solids.spatial.tolerances import MEETING, MEETING_SLACKS, PROVEN_SHARE
+
+# Evaluations for one pair of leaves, at most.
+BUDGET = 20_000
+# Numbers that the pairs of boxes of one pair of leaves need.
+WORK = 2048
+Key = tuple[int, int]
+
+
+class SelfIntersection(NamedTuple):
+    """A place where two faces of a boundary meet away from where they are joined.
+
+    Attributes
+    ----------
+    point_a, point_b : (3,) arrays
+        One of each, own frame.
+    feature_a, feature_b : Feature
+        The faces; twice the same of a face that meets itself.
+    gap : float
+        Between the points, length; below the tolerance.
+    depth : float
+        How far each face reaches beyond the other there on both of its sides, length: about, and
+        at least as far as it was looked for; 0 where they only come near or touch.
+    """
+
+    point_a: Array
+    point_b: Array
+    feature_a: Feature
+    feature_b: Feature
+    gap: float
+    depth: float
+
+
+@dataclass(frozen=True, eq=False)
+class SelfIntersections:
+    """What was found of a boundary that may meet itself.
+
+    Attributes
+    ----------
+    places : tuple of SelfIntersection
+        One of each pair of faces that meet, the deepest first.
+    tolerance : float
+        Faces that come nearer than this meet, length: four times the slack, and 1e-9 of the size at
+        least. They cross where they reach beyond each other by more.
+    apart : int
+        Pairs of pieces of faces that are proven not to meet.
+    beside : int
+        Pairs of pieces that are proven so, but for the neighbourhood of what joins them, where it
+        is not looked for: a 32nd of an edge's length round it, a thousandth of the shortest edge
+        round a vertex.
+    undecided : int
+        Pairs of pieces that neither were found to meet nor are proven not to.
+    """
+
+    places: tuple[SelfIntersection, ...]
+    tolerance: float
+    apart: int
+    beside: int
+    undecided: int
+
+    @property
+    def crossings(self) -> tuple[SelfIntersection, ...]:
+        """The places where faces reach beyond each other by more than the tolerance."""
+        return tuple(place for place in self.places if place.depth > self.tolerance)
+
+    @property
+    def none_outside_joints(self) -> bool:
+        """Is it proven that the boundary nowhere meets itself, but for the neighbourhoods of edges
+        and vertices?"""
+        return not self.places and self.undecided == 0
+
+    @property
+    def proven_none(self) -> bool:
+        """Is it proven that the boundary nowhere meets itself?"""
+        return self.none_outside_joints and self.beside == 0
+
+    def lines(self, unit: str = "") -> list[str]:
+        """What was found, in sentences."""
+        after = f" {unit}" if unit else ""
+        if self.proven_none:
+            return ["proven not to meet itself"]
+        found = [told(place, self.tolerance, after) for place in self.places]
+        if self.undecided:
+            found.append(f"whether {self.undecided} pairs of pieces of faces meet is not decided")
+        if not self.places:
+            how = "proven" if self.none_outside_joints else "found"
+            found.insert(0, f"not {how} to meet itself")
+        return found
+
+
+def told(place: SelfIntersection, tolerance: float, unit: str = "") -> str:
+    """A place in words."""
+    x, y, z = place.point_a
+    where = f"near ({x:.6g}, {y:.6g}, {z:.6g})"
+    if place.feature_a == place.feature_b:
+        which = f"{place.feature_a} meets itself"
+    else:
+        verb = "crosses" if place.depth > tolerance else "meets"
+        which = f"{place.feature_a} {verb} {place.feature_b}"
+    by = f", by about {place.depth:.3g}{unit}" if place.depth > tolerance else ""
+    return f"{which} away from their common edges {where}{by}"
+
+
+def self_intersections(solid: SolidModel) -> SelfIntersections:
+    """Look for places where a solid's boundary meets itself.
+
+    Parameters
+    ----------
+    solid : SolidModel
+
+    Returns
+    -------
+    SelfIntersections
+    """
+    count = sum(leaf.dim == 2 for leaf in solid.leaves)
+    every = count * (count + 1) // 2
+    tolerance = max(MEETING_SLACKS * solid.slack, MEETING * solid.size)
+    if isinstance(solid.boundary, Body):  # convex
+        return SelfIntersections((), tolerance, every, 0, 0)
+    groups, beside = own_pairs(solid, tolerance)
+    places: dict[Key, SelfIntersection] = {}
+    undecided = met = 0
+    for group in _shared_out(groups):
+        rows = _looked_at(solid, group, tolerance)
+        beside += int((rows[:, 0] == K.BESIDE).sum())
+        undecided += int((rows[:, 0] == K.OPEN).sum())
+        met += int((rows[:, 0] == K.MET).sum())
+        places |= _deepest(solid, group, rows)
+    ordered = sorted(places.values(), key=lambda place: (-place.depth, place.gap))
+    return SelfIntersections(
+        tuple(ordered), tolerance, every - beside - undecided - met, beside, undecided
+    )
+
+
+def _shared_out(groups: Iterable[OwnPairs]) -> Iterator[OwnPairs]:
+    """The same with all pairs of faces that have nothing in common as one group."""
+    alone = []
+    for group in groups:
+        if len(group.joint):
+            yield group
+        else:
+            alone.append(group.leaves)
+    if alone:
+        yield OwnPairs((-1, -1), np.concatenate(alone), np.zeros((0, 4)))
+
+
+def _looked_at(solid: SolidModel, group: OwnPairs, tolerance: float) -> Array:
+    """Rows (what is found, distance, parameters) of pairs of leaves."""
+    best = started(Sought(PROVEN_SHARE * tolerance, BUDGET, tolerance), solid.size, 0.0)[0]
+    found = np.zeros((len(group.leaves), K.FOUND_REALS))
+    counts = np.zeros(8, dtype=np.int64)
+    meet_own_leaves(
+        solid.packed,
+        np.ascontiguousarray(group.leaves).ravel(),
+        np.ascontiguousarray(group.joint).ravel(),
+        best,
+        np.zeros(WORK),
+        found.ravel(),
+        counts,
+    )
+    return found
+
+
+def _deepest(solid: SolidModel, group: OwnPairs, rows: Array) -> dict[Key, SelfIntersection]:
+    """Of each pair of faces that meet the place where they cross deepest, of those found."""
+    places: dict[Key, SelfIntersection] = {}
+    hits = np.flatnonzero(rows[:, 0] == K.MET)
+    if not len(hits):
+        return places
+    pair = PlacedPair(solid, solid, Pose.identity(), Pose.identity())
+    for k in hits:
+        leaves = group.leaves[k]
+        first = np.array([rows[k, 1], *leaves, *rows[k, 2:], 0.0])
+        place = _place(solid, first)
+        key = place.feature_a.index, place.feature_b.index
+        known = places.get(key)
+        if known is None or known.depth < place.depth:
+            places[key] = place
+        # where Newton's method ended at the rim of a face: other points of the same leaves
+        if places[key].depth == 0.0 and len(group.joint) == 0:
+            for start in starts(pair, first):
+                row = pair.found_from(first, start)
+                if row is not None and row[0] <= MEETING * solid.size:
+                    other = _place(solid, row)
+                    if other.depth > places[key].depth:
+                        places[key] = other
+    return places
+
+
+def _place(solid: SolidModel, row: Array) -> SelfIntersection:
+    """Of a row (distance, leaf, leaf, parameters)."""
+    a, b = int(row[1]), int(row[2])
+    depth, jets = crossing_depth(solid, (a, b), row[3:7])
+    sides = [(solid.feature_of(leaf), jet[0]) for leaf, jet in zip((a, b), jets, strict=True)]
+    (first, x), (other, y) = sorted(sides, key=lambda side: side[0])
+    return SelfIntersection(x, y, first, other, float(row[0]), depth)

@@ -1,0 +1,49 @@
+"""Where a face of a file is: spheres with holes that are no circles, and parts that cross
+themselves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cad_shapes as made
+import numpy as np
+import pytest
+
+import standoff as so
+from standoff.cli import main
+from standoff.errors import CadError
+
+RADIUS = 12.4
+BLIND = (0.0, 3.0, 1.0, 1.0, 0.0, 0.0, 4.0)
+THROUGH = (-30.0, 3.0, 1.0, 1.0, 0.0, 0.0, 4.0)
+OTHER = (0.0, -30.0, 2.0, 0.0, 1.0, 0.2, 2.0)
+
+
+@pytest.mark.parametrize("holes", [(BLIND,), (THROUGH,), (BLIND, OTHER)], ids=str)
+def test_a_ball_with_holes_off_its_centre(holes: tuple[tuple[float, ...], ...]) -> None:
+    shape = made.drilled_ball(RADIUS, *holes)
+    part = so.cad.from_shape(shape)[0]
+    volume, area = made.measured(shape)
+    assert part.report.faces["sphere"] == 1
+    # areas of faces are compared with OpenCASCADE's as the part is read
+    assert part.report.volume == pytest.approx(volume, rel=1e-6)
+    assert part.report.area == pytest.approx(area, rel=1e-6)
+    assert part.report.area < 4.0 * np.pi * RADIUS**2 + part.report.faces["cylinder"] * 800.0
+    assert not part.solid.contains([[6.0, 3.0, 1.0]])[0]
+    assert part.solid.contains([[-RADIUS + 0.1, -1.0, -1.0]])[0]
+
+
+def test_a_part_that_crosses_itself_is_refused_with_both_faces_and_the_place() -> None:
+    with pytest.raises(CadError, match="it crosses itself: face") as raised:
+        so.cad.from_shape(made.crossing_shells())
+    assert "(a plane) crosses face" in str(raised.value)
+    assert "near (2, " in str(raised.value)
+
+
+def test_what_is_found_of_a_part_is_in_its_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = made.write_step(made.plate(), tmp_path / "plate.step")
+    assert so.read_step(file)[0].report.self_intersections == ("proven not to meet itself",)
+    assert main(["check", str(file)]) == 0
+    assert "proven not to meet itself" in capsys.readouterr().out
