@@ -25,6 +25,7 @@ def block(width: float, height: float, depth: float) -> Solid:
 
 HELD = {
     "pin through its hole": (HOLE, peg(1.0, -0.5, 1.5), 0.0),
+    "pin flush with its hole": (HOLE, peg(1.0, 0.0, 1.0), 0.0),
     "pin within its hole": (HOLE, peg(1.0, 0.2, 0.7), 0.0),
     "pin half out of its hole": (HOLE, peg(1.0, 0.2, 1.7), 0.0),
     "block on three sides": (SLOT, block(2.0, 1.0, 2.0), 0.5),

@@ -33,7 +33,7 @@ LEAST_COMMON = -0.9
 # By how much a slope changes over a part, at most; a larger part is halved.
 MOST_CHANGE = 0.8
 # Boxes of potentials and points, each with one of both solids as A.
-MOST_EVALUATIONS = 200_000
+MOST_EVALUATIONS = 2_000_000
 # Potentials that are tried for one part.
 MOST_TRIED = 6
 # What the kernel needs of work space.
@@ -63,7 +63,7 @@ class _Part(NamedTuple):
     Attributes
     ----------
     face : B's.
-    centre, radius : of a ball around it, in A's frame.
+    centre, half : of a box around it, in B's frame.
     beside : a point that is outside A if the part is: its middle, or above it.
     slope : of the potential in the middle; zero of a part that is far away.
     change : of the slope over the part and what is near it, at most.
@@ -73,7 +73,7 @@ class _Part(NamedTuple):
 
     face: int
     centre: Array
-    radius: float
+    half: Array
     beside: Array
     slope: Array
     change: float
@@ -128,16 +128,17 @@ class _Sides:
 
     def _part(self, leaf: int, box: Array, cuts: int) -> bool:
         """Is a part of B's leaf far from A's boundary, or on one side of it, whole or in halves?"""
-        ball = self._ball(leaf, box)
-        away = np.linalg.norm(self.centres - ball[0], axis=1)
-        near = self.faces_a[away <= self.radii + ball[1] + self.near]
-        for over in self._potentials(near, ball[0]):
+        centre, half = self._extents(leaf, box)
+        middle = self.pair.in_a(centre @ self.pair.rb.T + self.pair.pb)
+        away = np.linalg.norm(self.centres - middle, axis=1)
+        near = self.faces_a[away <= self.radii + np.linalg.norm(half) + self.near]
+        for over in self._potentials(near, middle):
             told = self._asked(leaf, box, over, near)
             if told[0] > 0.0 and told[7] <= MOST_CHANGE:
                 face = self.pair.b.leaves[leaf].feature
                 potential = _potential(self.pair.a.leaves[over]) if over >= 0 else ()
                 slope, change = told[4:7], float(told[7])
-                part = _Part(face, *ball, told[1:4], slope, change, told[8] > 0.0, potential)
+                part = _Part(face, centre, half, told[1:4], slope, change, told[8] > 0.0, potential)
                 self.parts.append(part)
                 return True
         if cuts >= MOST_CUTS or self.counts[0] + 2 * self.counts[1] > MOST_EVALUATIONS:
@@ -162,12 +163,11 @@ class _Sides:
         first[k + 1] = other[k] = 0.5 * (box[k] + box[k + 1])
         return first, other
 
-    def _ball(self, leaf: int, box: Array) -> tuple[Array, float]:
-        """(middle, radius) of a ball around a part of B, in A's frame."""
+    def _extents(self, leaf: int, box: Array) -> tuple[Array, Array]:
+        """(middle, half extents) of a box around a part of B, in B's frame."""
         out = np.zeros(6)
         part_extents(self.pair.b.packed, np.eye(3).ravel(), leaf, np.ascontiguousarray(box), out)
-        turn, move = self.pair.relative[:9].reshape(3, 3), self.pair.relative[9:]
-        return turn @ out[:3] + move, float(np.linalg.norm(out[3:]))
+        return out[:3], out[3:]
 
     def _asked(self, leaf: int, box: Array, over: int, near: IntArray) -> Array:
         pair, shift = self.pair, float(np.linalg.norm(self.pair.relative[9:]))
@@ -197,11 +197,11 @@ def _joined(parts: list[_Part], near: float) -> bool:
     held = [part for part in parts if part.potential]
     if not held:
         return True
-    centres, radii = np.array([p.centre for p in held]), np.array([p.radius for p in held])
+    centres, halves = np.array([p.centre for p in held]), np.array([p.half for p in held])
     slopes, changes = np.array([p.slope for p in held]), np.array([p.change for p in held])
-    away = np.linalg.norm(centres[:, None] - centres[None], axis=2)
+    gaps = np.abs(centres[:, None] - centres[None]) - halves[:, None] - halves[None]
     numbers: dict[tuple[float, ...], int] = {}
     which = np.array([numbers.setdefault(p.potential, len(numbers)) for p in held])
-    meet = (away <= radii[:, None] + radii[None] + near) & (which[:, None] != which[None])
+    meet = (gaps.max(axis=2) <= near) & (which[:, None] != which[None])
     least = slopes @ slopes.T - changes[:, None] - changes[None]
     return bool((least[meet] > LEAST_COMMON).all())
