@@ -77,6 +77,7 @@ def test_what_is_inside_is_not_held() -> None:
         pair_of(ball(1.0), ball(1.0), (0.0, 0.0, 0.0)),
         pair_of(block(4.0, 4.0, 2.0), block(1.0, 1.0, 1.0), (1.0, 1.0, 0.0)),
         pair_of(block(4.0, 4.0, 2.0), peg(0.5, 0.0, 1.0), (2.0, 2.0, 0.0)),
+        pair_of(block(4.0, 4.0, 4.0), peg(0.5, 1.0, 2.0), (2.0, 2.0, 0.0)),
         pair_of(socket(1.0, 2.0), ball(2.0), (0.0, 0.0, 0.0)),
     )
     for pair in inside:
