@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.solid_shapes import ball, peg, prism, socket, tube
 from standoff.solids import Solid, distance
 from standoff.solids.spatial.held import depth_bound
+from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.tracking.status import Status
 
@@ -82,3 +84,15 @@ def test_what_is_inside_is_not_held() -> None:
     )
     for pair in inside:
         assert depth_bound(pair, 1e-10 * pair.size) == np.inf
+
+
+@pytest.mark.parametrize("depth", [1e-9, 1e-6, 1e-3])
+def test_a_block_in_a_half_space_is_as_deep_as_it_is_whichever_comes_first(depth: float) -> None:
+    """The half-space's frame is not that of the square of its plane that is searched."""
+    turned = so.Pose(Rotation.from_rotvec([0.3, -0.5, 0.2]).as_matrix(), (1.0, 2.0, 3.0))
+    ground, cube = as_model(so.shapes.halfspace()), block(1.0, 1.0, 1.0)
+    at = turned @ so.Pose(np.eye(3), (0.4, 0.2, -depth))
+    for pair in (PlacedPair(ground, cube, turned, at), PlacedPair(cube, ground, at, turned)):
+        assert depth_bound(pair, 1e-10 * pair.size) >= depth * (1.0 - 1e-6)
+        swapped = pair.swapped()
+        assert np.array_equal(swapped.in_b(np.eye(3)), pair.in_a(np.eye(3)))

@@ -15,7 +15,6 @@ from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import local_side, part_extents
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import CENTRE_OF
-from standoff.motion.pose import Pose
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import Sought, leaf_jet_of, started
 from standoff.solids.spatial.pair import PlacedPair, middle_of, references_of
@@ -50,8 +49,7 @@ def depth_bound(pair: PlacedPair, tolerance: float) -> float:
     tolerance : float
         The potentials may be missed by this, length; the bound is twice as much.
     """
-    swapped = PlacedPair(pair.b, pair.a, Pose(pair.rb, pair.pb), Pose(pair.ra, pair.pa))
-    for each in (pair, swapped):
+    for each in (pair, pair.swapped()):
         if _Sides(each, tolerance).hold():
             return 2.0 * tolerance
     return float(np.inf)

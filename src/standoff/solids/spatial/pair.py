@@ -91,6 +91,11 @@ class PlacedPair:
         pose_a, pose_b = self._given
         return PlacedPair(self.a, self.b, pose_a, Pose(pose_b.rotation, pose_b.translation + way))
 
+    def swapped(self) -> PlacedPair:
+        """The same pair with A and B changed over."""
+        pose_a, pose_b = self._given
+        return PlacedPair(self.b, self.a, pose_b, pose_a)
+
     def place(self, row: Array, senses: tuple[int, int]) -> Place:
         """Of a row (distance, leaf_a, leaf_b, parameters)."""
         leaf_a, leaf_b = int(row[1]), int(row[2])
