@@ -4,12 +4,15 @@ themselves."""
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import cad_shapes as made
 import numpy as np
 import pytest
 
 import standoff as so
+from standoff.cad.trims import of_file
 from standoff.cli import main
 from standoff.errors import CadError
 
@@ -47,3 +50,30 @@ def test_what_is_found_of_a_part_is_in_its_report(
     assert so.read_step(file)[0].report.self_intersections == ("proven not to meet itself",)
     assert main(["check", str(file)]) == 0
     assert "proven not to meet itself" in capsys.readouterr().out
+
+
+def test_a_trimming_curve_that_is_given_a_turn_away_is_turned_back() -> None:
+    """A file of an electronic part has its edge over (0.32, 3.14), the spline over (3.46, 9.42)."""
+    from OCP import collections as arrays
+    from OCP.Geom2d import Geom2d_BSplineCurve
+    from OCP.gp import gp_Pnt2d
+
+    poles, knots = arrays.Array1_gp_Pnt2d(1, 3), arrays.Array1_double(1, 2)
+    times = arrays.Array1_int(1, 2)
+    places = np.array([(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])
+    for k, place in enumerate(places, 1):
+        poles.SetValue(k, gp_Pnt2d(*place))
+    for k, knot in enumerate((3.46, 9.42), 1):
+        knots.SetValue(k, knot)
+        times.SetValue(k, 3)
+    flat = Geom2d_BSplineCurve(poles, knots, times, 2)
+    curve = SimpleNamespace(first=0.32, last=3.13)
+    edge: Any = SimpleNamespace(own=lambda ts: ts, curve=curve, scale=1.0, shift=0.0)
+    on: Any = SimpleNamespace(to_own=np.eye(2, 3), own=lambda points: points)
+    found = of_file(flat, edge, on)
+    assert found is not None
+    share = (1.0 + 2.0 * np.pi - 3.46) / (9.42 - 3.46)
+    row = np.array([(1 - share) ** 2, 2 * share * (1 - share), share**2])
+    assert np.allclose(found.point(1.0)[:2], row @ places, atol=1e-12)
+    curve.first, curve.last = 20.0, 21.0
+    assert of_file(flat, edge, on) is None

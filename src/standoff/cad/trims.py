@@ -127,8 +127,11 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
         first, last = edge.own(np.array([edge.curve.first, edge.curve.last]))
         if flat.Degree() > GREATEST_DEGREE:
             return _lowered(flat, edge, on)
-        points, knots, weights = spline_of(flat, float(first), float(last))
-        knots = _over(knots * edge.scale + edge.shift, edge.curve)
+        turn = _turn_to(flat, float(first), float(last))
+        if turn is None:
+            return None
+        points, knots, weights = spline_of(flat, float(first) + turn, float(last) + turn)
+        knots = _over((knots - turn) * edge.scale + edge.shift, edge.curve)
         points = straightened(on.own(points))
         if len(points) == 2 and weights is None:
             return _straight(points, knots[0], knots[-1])
@@ -138,6 +141,18 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
         except StandoffError:  # a cusp, or weights far apart
             return _lowered(flat, edge, on)
         return found
+    return None
+
+
+def _turn_to(flat: Any, first: float, last: float) -> float | None:
+    """What leads from an edge's parameters to where its trimming curve is given: nothing, or, in
+    some files, a turn; None where it is given nowhere there. How well it fits is bounded later."""
+    if flat.IsPeriodic():
+        return 0.0
+    for turn in (0.0, FULL_TURN, -FULL_TURN):
+        start = max(first + turn, flat.FirstParameter())
+        if start < min(last + turn, flat.LastParameter()):
+            return turn
     return None
 
 
