@@ -51,7 +51,7 @@ def pair_of(a: Solid, b: Solid, move: tuple[float, float, float]) -> PlacedPair:
     return PlacedPair(a, b, STILL, so.Pose(np.eye(3), move))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=10, deadline=None)
 @given(st.floats(-9.0, -3.0), st.floats(0.0, 1.0), st.floats(0.0, 6.28))
 def test_no_bound_is_below_the_depth_of_a_pin_in_its_hole(
     exponent: float, share: float, angle: float
@@ -65,7 +65,7 @@ def test_no_bound_is_below_the_depth_of_a_pin_in_its_hole(
     assert depth_bound(pair, tolerance) >= depth * (1.0 - 1e-6) - 1e-15
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(st.floats(-9.0, -3.0), st.floats(-0.4, 0.4))
 def test_no_bound_is_below_the_depth_of_a_block_in_its_slot(exponent: float, up: float) -> None:
     depth = 10.0**exponent
