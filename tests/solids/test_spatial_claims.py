@@ -19,8 +19,8 @@ from standoff.solids import OpenPair, Solid, distance
 from standoff.solids.of_pieces import turned
 from standoff.solids.spatial import distance as spatial_distance_module
 from standoff.solids.spatial.minimum import Sought
+from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
-from standoff.solids.spatial.solid_model import as_model
 from standoff.tracking.status import Status
 
 STILL = so.Pose.identity()
