@@ -52,7 +52,7 @@ def below_near(phi, most, near, pair, best, work, counts):
         o = PAIR_REALS * count
         pa = S.Part(a.side, a.leaf, S.Box(work[o], work[o + 1], work[o + 2], work[o + 3]))
         pb = S.Part(b.side, b.leaf, S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7]))
-        if no_pair(pa, pb, inf, best[ROUNDING])[1] >= near:
+        if no_pair(pa, pb, inf, best[ROUNDING], 0.0)[0] >= near:
             continue
         if trim_state(pa.side, pa.leaf, pa.box) == OUTSIDE_TRIM:
             continue

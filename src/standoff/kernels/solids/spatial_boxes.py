@@ -1,10 +1,10 @@
 """Pairs of nodes: how far apart their boxes are, whether their cones of normals admit a nearest
 pair, and the queue of those that wait."""
 
-from math import acos, asin, inf, pi
+from math import acos, asin, inf, pi, sin
 
 from standoff.kernels.algebra.vectors import add, dot, norm, rotate, scale, sub
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_tolerances import CONE_SPARE
 
@@ -102,31 +102,46 @@ def node_reach(side, node):
     return norm(vector_at(side.numbers, o))
 
 
-@kernel
+@small
 def admits(a, i, b, j, gap):
     """May two nodes hold a nearest pair of features, by their cones of normals? What is proven
     apart only; False is proven."""
+    return shut_for(a, i, b, j, gap, 1.0) <= 0.0
+
+
+@kernel
+def shut_for(a, i, b, j, gap, radius):
+    """How far B may move before two nodes may hold a nearest pair of features, by their cones of
+    normals, length; 0 or less where they may.
+
+    A motion counts as the greatest shift of B's points; it is at least `radius` times its angle.
+    What is proven while the nodes are apart only."""
     axis_a, angle_a = cone_of(a, i)
     axis_b, angle_b = cone_of(b, j)
     if gap <= 0.0:
-        return True
+        return 0.0
     if angle_a < 0.0 or angle_b < 0.0:
-        return False
-    if (
-        angle_a + angle_b < pi
-        and angle_between(axis_a, axis_b) < pi - angle_a - angle_b - CONE_SPARE
-    ):
-        return False
+        return gap
+    # no two normals are opposed: a turn brings them nearer to it
+    shut = radius * (pi - angle_a - angle_b - CONE_SPARE - angle_between(axis_a, axis_b))
     delta = sub(node_centre(b, j), node_centre(a, i))
     length = norm(delta)
     reach = node_reach(a, i) + node_reach(b, j)
     if length <= reach:
-        return True
+        return min(gap, shut)
     n = scale(1.0 / length, delta)
-    spread = asin(reach / length) + CONE_SPARE
-    if angle_between(axis_a, n) > angle_a + spread:
-        return False
-    return angle_between(axis_b, n) >= pi - angle_b - spread
+    spread = asin(reach / length)
+    # A's normals lead past B: a shift of B widens the directions to it
+    free = angle_between(axis_a, n) - angle_a - CONE_SPARE
+    if free > spread:
+        shut = max(shut, length * sin(min(free, 0.5 * pi)) - reach)
+    # B's lead past A: half of what is free for its turn, half for its shift
+    free = pi - angle_b - CONE_SPARE - angle_between(axis_b, n)
+    if free > spread:
+        half = 0.5 * (free - spread)
+        shift = length * sin(min(spread + half, 0.5 * pi)) - reach
+        shut = max(shut, min(radius * half, shift))
+    return min(gap, shut)
 
 
 @kernel

@@ -3,7 +3,7 @@
 from math import inf
 
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.coaxial import coaxial_between, common_axis
 from standoff.kernels.solids.spatial_bounds import proven
@@ -59,6 +59,11 @@ PAIR_REALS = 9
 MOST_PAIRS = 200
 # Boxes that a potential is bounded over, of one piece: few at first, for another may do.
 FEW_BOXES, MOST_BOXES = 20, 400
+# Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
+ALL_WAYS = (0, 6)
+OWN_A, OWN_B, HERE, THERE = 0, 1, 2, 9
+# Of how much farther parts are apart than is asked: what of it is tried to be proven too.
+SHARE_AHEAD = 0.8
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
 MARGINS = (1.0, 0.3, 3.0)
 
@@ -82,19 +87,24 @@ def by_own_surface(goal, a, b, q, limit, counts):
 
 
 @shared
-def by_witness(goal, a, b, at, limit, best, counts):
-    """Do potentials through a pair of points (leaves and parameters `at`) prove it?"""
+def by_witness(goal, a, b, at, ways, limit, best, counts):
+    """Which potential through a pair of points (leaves and parameters `at`) proves it: a plane (0),
+    or one of three margins about a common axis (1, 3, 5) or a torus (2, 4, 6); -1: none. Of `ways`
+    the first and the last are tried."""
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
     size = best[SIZE]
     n = direction(a.side, wa, ja, b.side, wb, jb, SURE_NORMAL * size)
     if norm(n) < 0.5:
-        return False
+        return -1
     x, y = ja[0], jb[0]
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
-    if by_one(plane_between(x, y, n), goal, a, b, place, counts):
-        return True
+    first, last = ways
+    if first == 0 and by_one(plane_between(x, y, n), goal, a, b, place, counts):
+        return 0
+    if last == 0:
+        return -1
     span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
     span = max(span, reach_of(b.side, b.leaf, b.box.u1 - b.box.u0, b.box.v1 - b.box.v0))
     span = max(min(span, size), LEAST_SPAN * size)
@@ -104,17 +114,17 @@ def by_witness(goal, a, b, at, limit, best, counts):
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
     turned, point, axis = common_axis(a, b, n, size)
-    for k in range(3):
-        if turned:
-            known, phi = coaxial_between(
-                x, y, n, frame, (sa, sb), (point, axis), MARGINS[k] / span, size
-            )
+    for way in range(max(first, 1), last + 1):
+        margin = MARGINS[(way - 1) // 2] / span
+        if way % 2 == 0:
+            phi = torus_between(x, y, n, frame, sa, sb, margin)
+            if by_one(phi, goal, a, b, place, counts):
+                return way
+        elif turned:
+            known, phi = coaxial_between(x, y, n, frame, (sa, sb), (point, axis), margin, size)
             if known and by_one(phi, goal, a, b, place, counts):
-                return True
-        phi = torus_between(x, y, n, frame, sa, sb, MARGINS[k] / span)
-        if by_one(phi, goal, a, b, place, counts):
-            return True
-    return False
+                return way
+    return -1
 
 
 @kernel
@@ -135,26 +145,35 @@ def by_one(phi, goal, a, b, place, counts):
 
 
 @kernel
-def slanted(part, jet, delta, length, reach):
-    """Is no direction from one box to the other normal to a leaf, by its tangents?"""
+def slanted(part, jet, delta, length, reach, turn):
+    """How far B may move before a direction from one box to the other is normal to a leaf, by its
+    tangents, length; 0 or less where one may be now.
+
+    `turn` is by how much the leaf turns as B moves, radians per length."""
     side, leaf, box = part.side, part.leaf, part.box
     o, m = leaf_reals(side, leaf), side.numbers
     hu, hv = 0.5 * (box.u1 - box.u0), 0.5 * (box.v1 - box.v0)
     far = length + reach
     uu, uv, vv = m[o + S.SECOND], m[o + S.SECOND + 1], m[o + S.SECOND + 2]
+    free = 0.0
     for k in range(2):
         tangent = jet[1 + k]
         change = uu * hu + uv * hv if k == 0 else uv * hu + vv * hv
         size = norm(tangent)
-        spare = size * reach + (change + SMOOTH_SPARE * size) * far
-        if size > 0.0 and abs(dot(tangent, delta)) > spare:
-            return True
-    return False
+        spread = change + SMOOTH_SPARE * size
+        spare = size * reach + spread * far
+        slope = abs(dot(tangent, delta))
+        if size > 0.0 and slope > spare:
+            # by a motion up to `length`, which the shift and the turn may each take
+            free = max(free, (slope - spare) / (size * (1.0 + 2.0 * turn * length) + spread))
+    return min(free, length)
 
 
 @kernel
-def no_pair(a, b, goal, rounding):
-    """(closed, lower bound of the distance) of two parts by their tangent planes' bounds."""
+def no_pair(a, b, goal, rounding, turn):
+    """(lower bound of the distance of two parts, length that B may move before they may hold a
+    nearest pair), by their tangent planes' bounds; 0 or less: they may now, and are nearer than
+    `goal`. `turn`: of B as it moves, radians per length."""
     qa, qb = middle(a.box), middle(b.box)
     ja, jb = leaf_jet(a.side, a.leaf, qa[0], qa[1]), leaf_jet(b.side, b.leaf, qb[0], qb[1])
     delta = sub(jb[0], ja[0])
@@ -163,18 +182,20 @@ def no_pair(a, b, goal, rounding):
     hb = (0.5 * (b.box.u1 - b.box.u0), 0.5 * (b.box.v1 - b.box.v0))
     reach = reach_of(a.side, a.leaf, ha[0], ha[1]) + reach_of(b.side, b.leaf, hb[0], hb[1])
     if length == 0.0:
-        return False, 0.0
+        return 0.0, 0.0
     n = scale(1.0 / length, delta)
     low = max(length - reach, 0.0)
     flat = length - along(a.side, a.leaf, ja, n, ha) - along(b.side, b.leaf, jb, n, hb)
     low = max(low, flat) - rounding
     if low >= goal:
-        return True, low
-    if length > reach + rounding and (
-        slanted(a, ja, delta, length, reach) or slanted(b, jb, delta, length, reach)
-    ):
-        return True, low
-    return False, max(low, 0.0)
+        return low, inf
+    apart = length - reach - rounding
+    if apart > 0.0:
+        free = slanted(a, ja, delta, length, reach, 0.0)
+        free = max(free, slanted(b, jb, delta, length, reach, turn))
+        if free > 0.0:
+            return low, min(free, apart)
+    return max(low, 0.0), 0.0
 
 
 @kernel
@@ -227,44 +248,55 @@ def closed_by_any(a, b, best, minima, counts):
     if best[ABOVE] > best[LEAST]:
         goal, row = local_goal(a, b, q, distance, best, minima)
     pair = (a, b, q, distance)
-    closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts)
+    closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts) >= 0
     # a nearer place off a trim is cut away sooner than bounded
     if not closed and distance >= goal:
-        closed = closed_to(goal, row, pair, MOST_BOXES, best, minima, counts)
+        closed = closed_to(goal, row, pair, MOST_BOXES, best, minima, counts) >= 0
     elif not closed:
-        closed = closed_off_trim(goal, a, b, best, counts)
+        closed = closed_off_trim(goal, 0.0, a, b, best, counts) >= goal
     if closed:
         best[OF_LEAVES] = min(best[OF_LEAVES], goal - best[ROUNDING])
     return closed
 
 
+@small
+def aimed(goal, distance, ahead):
+    """What to prove of parts that are farther apart than the goal: up to `ahead` more."""
+    return goal + max(0.0, min(ahead, SHARE_AHEAD * (distance - goal)))
+
+
 @kernel
-def closed_off_trim(goal, a, b, best, counts):
-    """Do potentials prove a goal of two parts that are nearer off their trims, through the nearest
-    points on the trimming curves of one?"""
+def closed_off_trim(goal, ahead, a, b, best, counts):
+    """A bound that potentials prove of two parts that are nearer off their trims, through the
+    nearest points on the trimming curves of one: from `goal` on, up to `ahead` more; -inf: none."""
     q, distance = nearest_on_trim(a, b, counts)
+    aim = aimed(goal, distance, ahead)
     if goal <= distance < inf and by_witness(
-        goal, a, b, (a.leaf, b.leaf, q), FEW_BOXES, best, counts
-    ):
-        return True
+        aim, a, b, (a.leaf, b.leaf, q), ALL_WAYS, FEW_BOXES, best, counts
+    ) >= 0:
+        return aim
     q, distance = nearest_on_trim(b, a, counts)
     if not goal <= distance < inf:
-        return False
+        return -inf
+    aim = aimed(goal, distance, ahead)
     at = (a.leaf, b.leaf, (q[2], q[3], q[0], q[1]))
-    return by_witness(goal, a, b, at, FEW_BOXES, best, counts)
+    return aim if by_witness(aim, a, b, at, ALL_WAYS, FEW_BOXES, best, counts) >= 0 else -inf
 
 
 @kernel
 def closed_to(goal, row, pair, limit, best, minima, counts):
-    """Do potentials prove a goal of two parts: of the surfaces themselves, through the nearest
-    points found in the pair, or through those that the goal comes from?"""
+    """By which way potentials prove a goal of two parts: of the surfaces themselves (`OWN_A`,
+    `OWN_B`), through the nearest points found in the pair (from `HERE` on), or through those that
+    the goal comes from (from `THERE` on); -1: by none."""
     a, b, q, distance = pair
     if by_own_surface(goal, a, b, (q[2], q[3]), limit, counts):
-        return True
+        return OWN_A
     if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
-        return True
-    if distance >= goal and by_witness(goal, a, b, (a.leaf, b.leaf, q), limit, best, counts):
-        return True
+        return OWN_B
+    if distance >= goal:
+        way = by_witness(goal, a, b, (a.leaf, b.leaf, q), ALL_WAYS, limit, best, counts)
+        if way >= 0:
+            return HERE + way
     wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
     at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     if row >= 0:
@@ -272,8 +304,25 @@ def closed_to(goal, row, pair, limit, best, minima, counts):
         wa, wb = int(minima[o + 1]), int(minima[o + 2])
         at = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     if wa == a.leaf and wb == b.leaf and distance >= goal:
-        return False
-    return by_witness(goal, a, b, (wa, wb, at), limit, best, counts)
+        return -1
+    way = by_witness(goal, a, b, (wa, wb, at), ALL_WAYS, limit, best, counts)
+    return THERE + way if way >= 0 else -1
+
+
+@kernel
+def closed_again(way, goal, pair, best, counts):
+    """Does the way that `closed_to` told of a pair, at another time, prove a goal of it?"""
+    a, b, q, _ = pair
+    if way == OWN_A:
+        return by_own_surface(goal, a, b, (q[2], q[3]), FEW_BOXES, counts)
+    if way == OWN_B:
+        return by_own_surface(goal, b, a, (q[0], q[1]), FEW_BOXES, counts)
+    if way < THERE:
+        at, one = (a.leaf, b.leaf, q), way - HERE
+    else:
+        q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+        at, one = (int(best[LEAF_A]), int(best[LEAF_B]), q), way - THERE
+    return by_witness(goal, a, b, at, (one, one), FEW_BOXES, best, counts) >= 0
 
 
 @kernel
@@ -307,9 +356,9 @@ def close_leaves(a, b, pair, best, minima, work, counts):
         o = PAIR_REALS * count
         pa = S.Part(a, leaf_a, S.Box(work[o], work[o + 1], work[o + 2], work[o + 3]))
         pb = S.Part(b, leaf_b, S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7]))
-        done, low = no_pair(pa, pb, goal_of(best), best[ROUNDING])
+        low, free = no_pair(pa, pb, goal_of(best), best[ROUNDING], 0.0)
         low = max(low, work[o + 8])
-        if done:
+        if free > 0.0:
             continue
         if evaluations(counts) > best[BUDGET] or count >= MOST_PAIRS - 2:
             best[OF_LEAVES] = min(best[OF_LEAVES], low)

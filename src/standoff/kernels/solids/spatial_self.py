@@ -259,7 +259,7 @@ def found_apart(a, b, goal, joint, best, counts):
 def state_of(a, b, goal, lies, joint, best, counts):
     """What is known of two parts before their nearest points are sought; OPEN: nothing."""
     counts[0] += 1
-    if no_pair(a, b, goal, best[ROUNDING])[1] >= goal:
+    if no_pair(a, b, goal, best[ROUNDING], 0.0)[0] >= goal:
         return APART
     if is_beside(joint, a) or is_beside(joint, b):
         return BESIDE

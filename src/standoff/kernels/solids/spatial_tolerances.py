@@ -46,3 +46,12 @@ MAY_REACH: Final = 0.3
 """Of the length below which faces meet: how far one may reach beyond the other's surface where it
 counts as on one side of it. It is more than a quarter, the slack of both, and less than the half to
 which parts are proven to be apart, so that no part that goes on from there counts as apart."""
+ONE_PLACE: Final = 1e-6
+"""Of the sizes: nearest pairs that are nearer to each other than this are one, found twice."""
+FLAT_VALLEY: Final = 1e-6
+"""Relative, of squared tangents: where the square of the distance bends less than this along a
+direction, the nearest pairs may be a continuum, which is then looked for."""
+HELD_SLOPE: Final = 1e-6
+"""Sine: a parameter at the side of a leaf is held there if the distance's slope is more."""
+MOTION_SPARE: Final = 1e-14
+"""Relative, and of the sizes: for the rounding of a motion between two poses."""

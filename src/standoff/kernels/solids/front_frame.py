@@ -1,0 +1,164 @@
+"""One frame of a tracked search: the witness points go on by Newton's method, and the rows of the
+front that are due are looked at."""
+
+from math import asin
+
+from standoff.kernels.algebra.roots import sqrt
+from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack, small
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.front_look import descend, settle_row
+from standoff.kernels.solids.front_rows import (
+    FRAME,
+    N_MADE,
+    N_ROWS,
+    ROW_A,
+    ROW_DISTANCE,
+    ROW_FRAME,
+    ROW_REALS,
+    add_row,
+)
+from standoff.kernels.solids.spatial_boxes import node_centre, node_reach
+from standoff.kernels.solids.spatial_minimum import fill_system, solved
+from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
+from standoff.kernels.solids.spatial_progress import (
+    AT,
+    LEAF_A,
+    LEAF_B,
+    LEAST,
+    MET,
+    MINIMUM_REALS,
+    N_MINIMA,
+    NOWHERE,
+    SIZE,
+    TOLERANCE,
+    keep_found,
+)
+from standoff.kernels.solids.spatial_tolerances import (
+    FLAT_VALLEY,
+    HELD_SLOPE,
+    MOTION_SPARE,
+    ONE_PLACE,
+)
+
+# A front that has this many times its first rows, and some, is made anew.
+GROWN, GROWN_BY = 2.0, 256.0
+# Bounds are wanted that last for so many frames like this one.
+FRAMES_AHEAD = 4.0
+
+
+@kernel
+def motion_between(before, now, size):
+    """(motion, radius): what no point of B has moved more than, and no turn times its radius;
+    lengths. `before` and `now` are B at both poses."""
+    centre, radius = node_centre(now, 0), node_reach(now, 0)
+    shift = norm(sub(centre, node_centre(before, 0)))
+    R, Q = before.pose.R, now.pose.R
+    square = 0.0
+    for k in range(9):
+        square += (R[k] - Q[k]) * (R[k] - Q[k])
+    # of two rotations the root of the sum of squares is 2 sqrt(2) sin(angle / 2)
+    angle = 2.0 * asin(min(sqrt(square / 8.0), 1.0))
+    return (shift + angle * radius) * (1.0 + MOTION_SPARE) + MOTION_SPARE * size, radius
+
+
+@kernel
+def far_side(a, b, radius):
+    """How much more than B's motion a point of A moves as B sees it, at most."""
+    length = norm(sub(node_centre(b, 0), node_centre(a, 0))) + node_reach(a, 0)
+    return 1.0 + length / radius
+
+
+@kernel
+def begin(a, b, best, minima):
+    """Where the witness points were, they are still on the solids: an upper bound."""
+    leaf_a, leaf_b = int(best[LEAF_A]), int(best[LEAF_B])
+    q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+    x = leaf_jet(a, leaf_a, q[0], q[1])[0]
+    y = leaf_jet(b, leaf_b, q[2], q[3])[0]
+    pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
+    keep_found(pa, pb, q, norm(sub(y, x)), best, minima)
+
+
+@kernel
+def follow(a, b, front, last, step, best, minima, counts):
+    """Newton's method in all rows that were among the nearest."""
+    store = front.store
+    for k in range(int(store[N_ROWS])):
+        o = ROW_REALS * k
+        if (
+            front.rows[o + ROW_A] >= 0.0
+            and front.rows[o + ROW_FRAME] == store[FRAME] - 1.0
+            and last - best[TOLERANCE] <= front.rows[o + ROW_DISTANCE] <= last + 0.1 * step
+        ):
+            descend(a, b, front, k, best, minima, counts)
+
+
+@kernel
+def make_front(front):
+    """One row, of both roots."""
+    front.store[N_ROWS] = 0.0
+    add_row(front, -1, -1, NOWHERE, NOWHERE, (0.0, 0.0, 0.0, 0.0), False)
+
+
+@kernel
+def has_grown(front):
+    return front.store[N_ROWS] > GROWN * front.store[N_MADE] + GROWN_BY
+
+
+@kernel
+def frame(a, b, front, travel, best, minima, counts):
+    """Fill `best` and `minima` as a search does; whether the front was made anew."""
+    store = front.store
+    anew = store[N_MADE] == 0.0 or has_grown(front)
+    if anew:
+        make_front(front)
+    k = 0
+    while k < int(store[N_ROWS]) and best[MET] == 0.0:
+        if not settle_row(a, b, front, k, travel, best, minima, counts):
+            k += 1
+    if anew:
+        store[N_MADE] = store[N_ROWS]
+    return anew
+
+
+@small
+def apart_by(best, minima, k, a, b, x, y):
+    """How far the points of a minimum are from two others, at most."""
+    o = MINIMUM_REALS * k
+    p = leaf_jet(a, int(minima[o + 1]), minima[o + 3], minima[o + 4])[0]
+    q = leaf_jet(b, int(minima[o + 2]), minima[o + 5], minima[o + 6])[0]
+    return max(norm(sub(p, x)), norm(sub(q, y)))
+
+
+@kernel
+def is_single(a, b, best, minima):
+    """Are the nearest points the only ones, as far as is known, and do all others grow away from
+    them?"""
+    leaf_a, leaf_b = int(best[LEAF_A]), int(best[LEAF_B])
+    q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+    ja, jb = leaf_jet(a, leaf_a, q[0], q[1]), leaf_jet(b, leaf_b, q[2], q[3])
+    for k in range(int(best[N_MINIMA])):
+        near = minima[MINIMUM_REALS * k] <= best[LEAST] + best[TOLERANCE]
+        if near and apart_by(best, minima, k, a, b, ja[0], jb[0]) > ONE_PLACE * best[SIZE]:
+            return False
+    return is_steep(a, leaf_a, ja, b, leaf_b, jb, q, best[LEAST])
+
+
+@kernel
+def is_steep(a, leaf_a, ja, b, leaf_b, jb, q, distance):
+    """Does the distance grow with the square of the parameters that no side holds?"""
+    g, H, free, scales = reals_on_stack(4), reals_on_stack(16), reals_on_stack(4), reals_on_stack(4)
+    out = reals_on_stack(4)
+    box_a, box_b = leaf_box(a, leaf_a), leaf_box(b, leaf_b)
+    lo = (box_a.u0, box_a.v0, box_b.u0, box_b.v0)
+    hi = (box_a.u1, box_a.v1, box_b.u1, box_b.v1)
+    fill_system(ja, jb, g, H)
+    for i in range(4):
+        tangent = ja[1 + i] if i < 2 else jb[i - 1]
+        length = norm(tangent)
+        scales[i] = length * length
+        at_side = q[i] <= lo[i] or q[i] >= hi[i]
+        held = at_side and abs(g[i]) > HELD_SLOPE * length * distance
+        free[i] = 0.0 if held or length == 0.0 or hi[i] <= lo[i] else 1.0
+    return solved(H, g, free, -FLAT_VALLEY, scales, out)

@@ -1,0 +1,292 @@
+"""A row of the front that is due: its bounds anew, or its parts in its place."""
+
+from math import inf
+
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.crossing_planes import planes_apart
+from standoff.kernels.solids.front_rows import (
+    ROW_A,
+    ROW_AT,
+    ROW_B,
+    ROW_DISTANCE,
+    ROW_FRAME,
+    ROW_WAY,
+    ROW_REALS,
+    FRAME,
+    KEY_REALS,
+    add_row,
+    box_of_row,
+    drop_row,
+    is_due,
+    keep_bound,
+    keep_shut,
+    open_up,
+    put_row,
+    start_of_row,
+)
+from standoff.kernels.solids.over_plane import clear_of_plane
+from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, shut_for
+from standoff.kernels.solids.spatial_closing import (
+    FEW_BOXES,
+    MOST_BOXES,
+    THERE,
+    aimed,
+    closed_again,
+    closed_off_trim,
+    closed_to,
+    no_pair,
+    split,
+    widths,
+)
+from standoff.kernels.solids.spatial_minimum import nearest
+from standoff.kernels.solids.spatial_pieces import OUTSIDE_TRIM, leaf_box, trim_state
+from standoff.kernels.solids.spatial_progress import (
+    BISECTIONS,
+    BUDGET,
+    LEAF_PAIRS,
+    LEAST,
+    MET,
+    NODE_PAIRS,
+    NOWHERE,
+    OPEN,
+    ROUNDING,
+    SIZE,
+    TOLERANCE,
+    evaluations,
+    farthest,
+    goal_of,
+    keep_found,
+    middle,
+)
+from standoff.kernels.solids.spatial_search import node_ints
+from standoff.kernels.solids.spatial_tolerances import SHORTEST_PART
+
+# Boxes that a pair with a plane is looked at with.
+PLANE_BOXES = 1
+NO_START = (0.0, 0.0, 0.0, 0.0)
+# Of a pair of leaves' parts bounds are wanted that last for so many times more motion.
+LEAVES_AHEAD = 8.0
+# What became of a row: it stays as it is, its parts are in its place, or it is gone.
+KEPT, CUT, GONE_ROW = 0, 1, 2
+
+
+@kernel
+def look_at_nodes(a, b, front, k, travel, best, counts):
+    """Bound a pair of nodes; one that may hold a nearest pair is cut, or becomes one of leaves."""
+    o = ROW_REALS * k
+    i, j = -1 - int(front.rows[o + ROW_A]), -1 - int(front.rows[o + ROW_B])
+    counts[NODE_PAIRS] += 1
+    gap = gap_of(a, i, b, j) - best[ROUNDING]
+    keep_bound(front, k, gap, travel)
+    if gap >= farthest(best) + travel.ahead:
+        return KEPT
+    shut = shut_for(a, i, b, j, inf if travel.sure else gap, travel.radius)
+    if shut > travel.ahead:
+        keep_shut(front, k, shut, travel)
+        return KEPT
+    ra, rb = node_ints(a, i), node_ints(b, j)
+    leaf_a, leaf_b = a.own[ra + 2], b.own[rb + 2]
+    if leaf_a >= 0 and leaf_b >= 0:
+        if shut > 0.0:
+            keep_shut(front, k, shut, travel)
+            return KEPT
+        put_row(front, k, leaf_a, leaf_b, leaf_box(a, leaf_a), leaf_box(b, leaf_b))
+        return CUT
+    if leaf_b >= 0 or (leaf_a < 0 and node_reach(a, i) >= node_reach(b, j)):
+        if not add_row(front, -1 - a.own[ra + 1], -1 - j, NOWHERE, NOWHERE, NO_START, False):
+            return KEPT
+        put_row(front, k, -1 - a.own[ra], -1 - j, NOWHERE, NOWHERE)
+        return CUT
+    if not add_row(front, -1 - i, -1 - b.own[rb + 1], NOWHERE, NOWHERE, NO_START, False):
+        return KEPT
+    put_row(front, k, -1 - i, -1 - b.own[rb], NOWHERE, NOWHERE)
+    return CUT
+
+
+@kernel
+def parts_of_row(a, b, front, k):
+    o = ROW_REALS * k
+    leaf_a, leaf_b = int(front.rows[o + ROW_A]), int(front.rows[o + ROW_B])
+    pa = S.Part(a, leaf_a, box_of_row(front, k, 0))
+    return pa, S.Part(b, leaf_b, box_of_row(front, k, 1))
+
+
+@kernel
+def middles(box_a, box_b):
+    u, v = middle(box_a)
+    s, t = middle(box_b)
+    return (u, v, s, t)
+
+
+@shared
+def descend(a, b, front, k, best, minima, counts):
+    """Newton's method in a row, once a frame, from where it came to last."""
+    pa, pb = parts_of_row(a, b, front, k)
+    o, r = ROW_REALS * k, front.rows
+    if r[o + ROW_FRAME] != front.store[FRAME]:
+        start = start_of_row(front, k)
+        if r[o + ROW_DISTANCE] == inf:
+            start = middles(pa.box, pb.box)
+        q, distance = nearest(a, pa.leaf, pa.box, b, pb.leaf, pb.box, start, counts)
+        for i in range(4):
+            r[o + ROW_AT + i] = q[i]
+        r[o + ROW_DISTANCE], r[o + ROW_FRAME] = distance, front.store[FRAME]
+        keep_found(pa, pb, q, distance, best, minima)
+    return start_of_row(front, k), r[o + ROW_DISTANCE]
+
+
+@kernel
+def beside_plane(pa, pb, goal, travel, best, counts):
+    """How much B may move before a plane's face and the other part may hold a nearest pair nearer
+    than `goal`, length; -1: they may now."""
+    for i in range(2):
+        ahead = travel.ahead if i == 0 else 0.0
+        # the goal grows with the motion as well
+        spare = best[ROUNDING] + ahead
+        if clear_of_plane(pa, pb, goal + ahead, spare, PLANE_BOXES, counts):
+            return ahead
+        spare = best[ROUNDING] + travel.afar * ahead
+        if clear_of_plane(pb, pa, goal + ahead, spare, PLANE_BOXES, counts):
+            return ahead
+        if ahead == 0.0:
+            break
+    return -1.0
+
+
+@kernel
+def look_at_leaves(a, b, front, k, travel, best, minima, counts):
+    """Bound a pair of leaves' parts, or cut it."""
+    pa, pb = parts_of_row(a, b, front, k)
+    counts[LEAF_PAIRS] += 1
+    goal = goal_of(best)
+    low, free = no_pair(pa, pb, goal, best[ROUNDING], travel.turn)
+    keep_bound(front, k, low, travel)
+    if free == inf:
+        return KEPT
+    if free > 0.0:
+        keep_shut(front, k, free, travel)
+        return KEPT
+    if (
+        trim_state(a, pa.leaf, pa.box) == OUTSIDE_TRIM
+        or trim_state(b, pb.leaf, pb.box) == OUTSIDE_TRIM
+    ):
+        drop_row(front, k)
+        return GONE_ROW
+    free = -1.0
+    way = int(front.rows[ROW_REALS * k + ROW_WAY])
+    if way < 0:
+        free = beside_plane(pa, pb, goal, travel, best, counts)
+    elif way >= THERE and closed_again(way, goal, (pa, pb, NO_START, 0.0), best, counts):
+        keep_bound(front, k, goal - best[ROUNDING], travel)
+        return KEPT
+    if free < 0.0 and not travel.sure and planes_apart(pa, pb, best[SIZE]):
+        free = 0.0
+    if free >= 0.0:
+        keep_shut(front, k, free, travel)
+        return KEPT
+    q, distance = descend(a, b, front, k, best, minima, counts)
+    if best[MET] > 0.0:
+        return KEPT
+    return close_row(front, k, (pa, pb, q, distance), travel, best, minima, counts)
+
+
+@kernel
+def close_as_before(front, k, pair, ahead, best, counts):
+    """Does the way that closed a row last close it again, with a bound that lasts if its points are
+    far enough apart?"""
+    way = int(front.rows[ROW_REALS * k + ROW_WAY])
+    if way < 0:
+        return -inf
+    goal = goal_of(best)
+    aim = aimed(goal, pair[3], ahead)
+    if aim > goal + best[TOLERANCE] and closed_again(way, aim, pair, best, counts):
+        return aim
+    return goal if closed_again(way, goal, pair, best, counts) else -inf
+
+
+@kernel
+def close_row(front, k, pair, travel, best, minima, counts):
+    """Prove of two parts that they are as far apart as the nearest points, and more where they are;
+    what no potential proves is cut."""
+    pa, pb, _, distance = pair
+    goal, o = goal_of(best), ROW_REALS * k
+    low = close_as_before(front, k, pair, LEAVES_AHEAD * travel.ahead, best, counts)
+    if low < goal:
+        aim = aimed(goal, distance, LEAVES_AHEAD * travel.ahead)
+        way = -1
+        if aim > goal + best[TOLERANCE]:
+            way = closed_to(aim, -1, pair, FEW_BOXES, best, minima, counts)
+        if way < 0:
+            aim = goal
+            way = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
+        if way < 0 and distance >= goal:
+            way = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
+        front.rows[o + ROW_WAY] = way
+        low = aim if way >= 0 else -inf
+    if low < goal and distance < goal:
+        low = closed_off_trim(goal, LEAVES_AHEAD * travel.ahead, pa, pb, best, counts)
+    if low >= goal:
+        keep_bound(front, k, low - best[ROUNDING], travel)
+        return KEPT
+    counts[BISECTIONS] += 1
+    return CUT if cut_row(front, k, pair, best) else KEPT
+
+
+@kernel
+def cut_row(front, k, pair, best):
+    """Cut the longer part in two; False: it is too short, or there is no room."""
+    pa, pb, q, _ = pair
+    au, av = widths(pa.side, pa.leaf, pa.box)
+    bu, bv = widths(pb.side, pb.leaf, pb.box)
+    if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
+        return False
+    if max(au, av) >= max(bu, bv):
+        first, second = split(pa.box, au >= av)
+        if not add_row(front, pa.leaf, pb.leaf, second, pb.box, q, True):
+            return False
+        put_row(front, k, pa.leaf, pb.leaf, first, pb.box)
+        return True
+    first, second = split(pb.box, bu >= bv)
+    if not add_row(front, pa.leaf, pb.leaf, pa.box, second, q, True):
+        return False
+    put_row(front, k, pa.leaf, pb.leaf, pa.box, first)
+    return True
+
+
+@kernel
+def asked_of(best):
+    """The bound that is to be proven of all rows."""
+    return goal_of(best) - best[ROUNDING]
+
+
+@kernel
+def settle_row(a, b, front, k, travel, best, minima, counts):
+    """Look at a row until it is no longer due, cutting it; whether it is gone. What stays open
+    lowers best[OPEN]."""
+    while best[MET] == 0.0 and is_due(front, k, asked_of(best), travel):
+        bound = front.keys[KEY_REALS * k] - travel.gone
+        if evaluations(counts) > best[BUDGET]:
+            best[OPEN] = min(best[OPEN], max(bound, 0.0))
+            return False
+        open_up(front, k)
+        if front.rows[ROW_REALS * k + ROW_A] < 0.0:
+            told = look_at_nodes(a, b, front, k, travel, best, counts)
+        else:
+            told = look_at_leaves(a, b, front, k, travel, best, minima, counts)
+        if told == GONE_ROW:
+            return True
+        if told == KEPT and is_due_now(front, k, asked_of(best), travel):
+            bound = front.keys[KEY_REALS * k] - travel.gone
+            best[OPEN] = min(best[OPEN], max(bound, 0.0))
+            return False
+        if told == KEPT:
+            return False
+    return False
+
+
+@kernel
+def is_due_now(front, k, goal, travel):
+    """After a look: is a row open? One that is shut for this frame alone is not."""
+    bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
+    return bound < goal + travel.gone and shut < travel.gone

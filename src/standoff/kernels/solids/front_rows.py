@@ -1,0 +1,131 @@
+"""The front of a tracked search: pairs of nodes and of leaves' parts that cover all pairs of points,
+each with how far B may move before it is to be looked at.
+
+The motion of B in A's frame is a length that only grows: in each frame by what no point of B has
+moved more than, and no turn times B's radius more than. A row is left alone while its bound, less
+the motion since it was made, is beyond what is to be proven; or while the motion has not come to
+where it may hold a nearest pair at all.
+"""
+
+from math import inf
+from typing import Any, NamedTuple
+
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids import spatial_layout as S
+
+# What a row holds: leaves (-1 - node where it is a node), both boxes, where Newton's method came
+# to last, at which distance, and in which frame; by which way it was closed last (-1: none).
+ROW_REALS = 17
+ROW_A, ROW_B, ROW_BOXES, ROW_AT, ROW_DISTANCE, ROW_FRAME, ROW_WAY = 0, 1, 2, 10, 14, 15, 16
+# Of each row two numbers: bound and shut, both plus the motion when they were proven.
+KEY_REALS = 2
+# What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
+# the front had when it was made, how many frames there were.
+N_ROWS, GONE, N_MADE, FRAME = 0, 1, 2, 3
+STORE_REALS = 4
+
+
+class Front(NamedTuple):
+    """The rows, and room for `most` of them."""
+
+    store: Any
+    keys: Any
+    rows: Any
+    most: Any
+
+
+class Travel(NamedTuple):
+    """How B moves.
+
+    Attributes
+    ----------
+    gone : the motion so far, length.
+    ahead : bounds are wanted that last for this much more of it, length.
+    radius : of B, length, by which turns are counted.
+    turn : radians by which B turns at most, per length of the motion.
+    afar : how much more than the motion a point of A moves as B sees it.
+    sure : are the solids known to be apart, as they were, and have not moved so far?
+    """
+
+    gone: Any
+    ahead: Any
+    radius: Any
+    turn: Any
+    afar: Any
+    sure: Any
+
+
+@kernel
+def add_row(front, i, j, box_a, box_b, q, known):
+    """Put a row, which is then to be looked at; whether there was room."""
+    n = int(front.store[N_ROWS])
+    if n >= front.most:
+        return False
+    put_row(front, n, i, j, box_a, box_b)
+    o = ROW_REALS * n
+    front.rows[o + ROW_DISTANCE] = 0.0 if known else inf
+    for k in range(4):
+        front.rows[o + ROW_AT + k] = q[k]
+    front.store[N_ROWS] += 1.0
+    return True
+
+
+@kernel
+def put_row(front, k, i, j, box_a, box_b):
+    o, r = ROW_REALS * k, front.rows
+    r[o + ROW_A], r[o + ROW_B] = i, j
+    b = o + ROW_BOXES
+    r[b], r[b + 1], r[b + 2], r[b + 3] = box_a.u0, box_a.u1, box_a.v0, box_a.v1
+    r[b + 4], r[b + 5], r[b + 6], r[b + 7] = box_b.u0, box_b.u1, box_b.v0, box_b.v1
+    r[o + ROW_FRAME], r[o + ROW_WAY] = -1.0, -1.0
+    front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1] = -inf, -inf
+
+
+@kernel
+def drop_row(front, k):
+    """Take a row out: the last takes its place."""
+    last = int(front.store[N_ROWS]) - 1
+    for i in range(ROW_REALS):
+        front.rows[ROW_REALS * k + i] = front.rows[ROW_REALS * last + i]
+    for i in range(KEY_REALS):
+        front.keys[KEY_REALS * k + i] = front.keys[KEY_REALS * last + i]
+    front.store[N_ROWS] = last
+
+
+@kernel
+def box_of_row(front, k, which):
+    o = ROW_REALS * k + ROW_BOXES + 4 * which
+    r = front.rows
+    return S.Box(r[o], r[o + 1], r[o + 2], r[o + 3])
+
+
+@kernel
+def start_of_row(front, k):
+    o, r = ROW_REALS * k + ROW_AT, front.rows
+    return (r[o], r[o + 1], r[o + 2], r[o + 3])
+
+
+@kernel
+def is_due(front, k, goal, travel):
+    """Is a row to be looked at: may it hold points nearer than `goal`?"""
+    bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
+    if bound >= goal + travel.gone:
+        return False
+    # what cannot hold a nearest pair may still hold a common point, if the solids may have one
+    return shut <= travel.gone or (not travel.sure and bound <= travel.gone)
+
+
+@kernel
+def open_up(front, k):
+    """What a row was shut by no longer counts."""
+    front.keys[KEY_REALS * k + 1] = -inf
+
+
+@kernel
+def keep_bound(front, k, low, travel):
+    front.keys[KEY_REALS * k] = max(front.keys[KEY_REALS * k], low + travel.gone)
+
+
+@kernel
+def keep_shut(front, k, free, travel):
+    front.keys[KEY_REALS * k + 1] = max(front.keys[KEY_REALS * k + 1], free + travel.gone)
