@@ -421,7 +421,7 @@ def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:
             }
         )
     with pytest.raises(TypeError, match="World ask solids"):
-        so.Tracker(BALL, so.shapes.box((1, 1, 1)), 0.01)  # type: ignore[arg-type]
+        so.Tracker(RINGS, so.shapes.box((1, 1, 1)), 0.01)  # type: ignore[arg-type]
 
 
 def test_compounds_of_convex_pieces_are_asked_as_in_a_world() -> None:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from standoff.solids.spatial.points import PointDistances
     from standoff.solids.spatial.self_intersections import SelfIntersection, SelfIntersections
     from standoff.solids.spatial.solid import Solid
+    from standoff.solids.tracked.answers import SolidAnswers
+    from standoff.solids.tracked.tracker import SolidState, SolidTracker
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -42,6 +44,8 @@ else:
                 "SelfIntersections",
             ),
             "standoff.solids.spatial.solid": ("Solid",),
+            "standoff.solids.tracked.answers": ("SolidAnswers",),
+            "standoff.solids.tracked.tracker": ("SolidState", "SolidTracker"),
         },
     )
 
@@ -55,8 +59,11 @@ __all__ = [
     "SelfIntersection",
     "SelfIntersections",
     "Solid",
+    "SolidAnswers",
     "SolidCounts",
     "SolidProximity",
+    "SolidState",
+    "SolidTracker",
     "distance",
     "open_boundary",
     "read_dxf",

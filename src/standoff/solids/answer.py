@@ -125,6 +125,10 @@ class SolidCounts(NamedTuple):
         Pieces that were cut in two because no potential closed them whole.
     open : int
         Pairs of pieces that were not closed; the answer lists the nearest of them.
+    restarts : int
+        Of a tracker's frame: 1 where it was asked from nothing.
+    rebuilds : int
+        Of a tracker's frame: 1 where the front of bounds was made anew.
     """
 
     evaluations: int = 0
@@ -133,6 +137,8 @@ class SolidCounts(NamedTuple):
     boxes: int = 0
     bisections: int = 0
     open: int = 0
+    restarts: int = 0
+    rebuilds: int = 0
 
 
 @dataclass(frozen=True, eq=False, repr=False)

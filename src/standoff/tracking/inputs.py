@@ -197,7 +197,8 @@ def check_body(body: object) -> None:
         # solids and compounds, which are above this layer, answer cold queries by themselves
         asked = hasattr(body, "cold_query")
         way = (
-            "this takes convex bodies alone; so.distance and so.World ask solids and compounds"
+            "this takes convex bodies alone; so.distance and so.World ask solids and compounds, "
+            "and so.Tracker keeps two solids in space"
             if asked
             else "make one with so.shapes or Body.from_brep"
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,9 +43,21 @@ HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", 
 """What runs and the studies need but users do not."""
 
 
+@runtime_checkable
+class Tracked(Protocol):
+    """What is no `Body`, and makes a tracker with another by itself: a solid."""
+
+    def tracked(self, a: Any, b: Any, *given: Any, **options: Any) -> Any:
+        """A tracker of A and B, one of which is this one, with the options of its kind."""
+        ...
+
+
 @hides(*HIDDEN)
 class Tracker(KeepsReadOnly):
     """Keeps the minimum distance of two convex bodies while they move.
+
+    Of a `Solid` and another, or a body, ``so.Tracker(a, b)`` makes a `SolidTracker`, which has its
+    own options.
 
     Parameters
     ----------
@@ -76,6 +88,13 @@ class Tracker(KeepsReadOnly):
         A number that is not positive, a feedback that is not stable at `dt`, a planar body with a
         spatial one, two half-spaces.
     """
+
+    def __new__(cls, a: Any = None, b: Any = None, *given: Any, **options: Any) -> Any:
+        """Of solids, which are above this layer, the tracker that they make."""
+        makers = [each for each in (a, b) if isinstance(each, Tracked)]
+        if makers:
+            return makers[0].tracked(a, b, *given, **options)
+        return super().__new__(cls)
 
     def __init__(
         self,

@@ -1,11 +1,15 @@
 """Frames of two solids that move, as Python calls them."""
 
+from math import inf
+
+from numba import types
+
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
-from standoff.kernels.compiler.entry import INT, INTS, READ, READ_ROWS, ROWS, WRITE, WRITE_INTS
-from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.compiler.entry import INTS, READ, READ_ROWS, ROWS, WRITE, WRITE_INTS
 from standoff.kernels.entries.solids import SOLIDS, STILL, side_at
-from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.front_frame import (
+    FARTHEST_AHEAD,
+    FARTHEST_GONE,
     FRAMES_AHEAD,
     begin,
     far_side,
@@ -14,7 +18,7 @@ from standoff.kernels.solids.front_frame import (
     is_single,
     motion_between,
 )
-from standoff.kernels.solids.front_rows import FRAME, GONE, N_MADE, Front, ROW_REALS, Travel
+from standoff.kernels.solids.front_rows import FRAME, GONE, N_MADE, ROW_REALS, Front, Travel
 from standoff.kernels.solids.spatial_pieces import leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     AT,
@@ -31,18 +35,23 @@ from standoff.kernels.solids.spatial_progress import (
 )
 
 # What a frame tells: how it ended, distance, bound, motion, both points, leaves and parameters,
-# rows of the front, evaluations, and 1 where the front was made anew.
+# rows of the front, evaluations, 1 where the front was made anew, and 1 where the solids are sure
+# to be apart because they were, and have not moved so far.
 ENDED, DISTANCE, BOUND, MOTION, POINT_A, POINT_B, LEAVES, PARAMETERS = 0, 1, 2, 3, 4, 7, 10, 12
-ROWS_TOLD, TAKEN, ANEW = 16, 17, 18
-TOLD_REALS = 19
+ROWS_TOLD, TAKEN, ANEW, SURE = 16, 17, 18, 19
+TOLD_REALS = 20
+N_COUNTS = 5
 # How it ended: proven and at one place; several places or a continuum, to be looked for; not
 # proven; and met, or not known to be apart, so that a query from nothing is to decide.
 SINGLE, SEVERAL, INTERVAL, TO_ASK = 0.0, 1.0, 2.0, 3.0
 
 
 @kernel
-def tell(a, b, best, minima, anew, front, counts, out):
-    out[DISTANCE], out[BOUND] = best[LEAST], min(best[LEAST] - best[TOLERANCE], best[OPEN])
+def tell(a, b, best, minima, least, front, counts, out):
+    """`least`: what the solids are at least apart by, as they were before."""
+    low = min(best[LEAST] - best[TOLERANCE], best[OPEN])
+    out[DISTANCE], out[BOUND] = best[LEAST], max(low, least)
+    best[OPEN] = out[BOUND]
     leaf_a, leaf_b = int(best[LEAF_A]), int(best[LEAF_B])
     x = leaf_jet(a, leaf_a, best[AT], best[AT + 1])[0]
     y = leaf_jet(b, leaf_b, best[AT + 2], best[AT + 3])[0]
@@ -52,7 +61,6 @@ def tell(a, b, best, minima, anew, front, counts, out):
     for k in range(4):
         out[PARAMETERS + k] = best[AT + k]
     out[ROWS_TOLD], out[TAKEN] = front.store[0], evaluations(counts)
-    out[ANEW] = 1.0 if anew else 0.0
     if best[MET] > 0.0 or out[BOUND] <= 0.0:
         out[ENDED] = TO_ASK
     elif out[BOUND] < best[LEAST] - best[TOLERANCE]:
@@ -61,43 +69,48 @@ def tell(a, b, best, minima, anew, front, counts, out):
         out[ENDED] = SINGLE if is_single(a, b, best, minima) else SEVERAL
 
 
-FRONT = (WRITE, WRITE, WRITE)
+# B's pose in A's frame in the frame before, with the least distance and the bound there; its poses
+# now.
+WAY = types.Tuple((READ, READ_ROWS))
+# As `boundary_distance` has them: where the witness points were stands in the first.
+SEARCH = types.Tuple((WRITE, WRITE))
+# What is kept beside the rows of the front, their keys, the rows.
+FRONT = types.Tuple((WRITE, WRITE, WRITE))
 
 
-@entry(
-    SOLIDS, READ, READ_ROWS, INTS, WRITE, WRITE, WRITE, WRITE, WRITE, WRITE_INTS, ROWS,
-    work="solids",
-)  # fmt: skip
-def solid_frames(solids, before, poses, senses, best, minima, store, keys, rows, counts, told):
-    """Frames one after the other, B at poses in A's frame, into the rows of `told`, up to one that
-    does not end SINGLE; how many were done.
-
-    before: B's pose of the last frame, the least distance and the bound there. best: where the
-    witness points were, and what is asked."""
+@entry(SOLIDS, WAY, INTS, SEARCH, FRONT, WRITE_INTS, ROWS, work="solids")
+def solid_frames(solids, way, senses, search, front, counts, told):
+    """Frames one after the other into the rows of `told`, up to one that does not end SINGLE, or in
+    which the solids are not sure to be apart; how many were done."""
+    before, poses = way
     a = side_at(solids[0], STILL, senses[0])
-    last, now = side_at(solids[1], before, senses[1]), side_at(solids[1], before, senses[1])
+    last = side_at(solids[1], before, senses[1])
     distance, low = before[12], before[13]
-    front = Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), len(rows) // ROW_REALS)
-    b, m, c = pointer(best, 0), pointer(minima, 0), pointer(counts, 0)
+    store, keys, rows = front
+    kept = Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), len(rows) // ROW_REALS)
+    best, minima, c = pointer(search[0], 0), pointer(search[1], 0), pointer(counts, 0)
     for i in range(len(poses)):
         now = side_at(solids[1], poses[i], senses[1])
         step, radius = motion_between(last, now, best[SIZE])
-        sure = step < low and store[N_MADE] > 0.0
+        sure = step < low
+        if store[GONE] > FARTHEST_GONE * best[SIZE]:
+            store[GONE], store[N_MADE] = 0.0, 0.0
         store[GONE] += step
         store[FRAME] += 1.0
-        travel = Travel(
-            store[GONE], FRAMES_AHEAD * step, radius, 1.0 / radius, far_side(a, now, radius), sure
-        )
-        b[LEAST], b[OPEN], b[MET], b[N_MINIMA], b[N_OPEN] = 1e300, 1e300, 0.0, 0.0, 0.0
-        for k in range(5):
+        ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
+        afar = far_side(a, now, radius)
+        travel = Travel(store[GONE], ahead, radius, 1.0 / radius, afar, sure)
+        best[LEAST], best[OPEN], best[MET], best[N_MINIMA], best[N_OPEN] = inf, inf, 0.0, 0.0, 0.0
+        for k in range(N_COUNTS):
             c[k] = 0
-        begin(a, now, b, m)
-        follow(a, now, front, distance, step, b, m, c)
-        anew = frame(a, now, front, travel, b, m, c)
+        begin(a, now, best, minima)
+        follow(a, now, kept, distance, step, best, minima, c)
+        anew = frame(a, now, kept, travel, best, minima, c)
         out = pointer(told, TOLD_REALS * i)
-        tell(a, now, b, m, anew, front, c, out)
+        tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)
         out[MOTION] = step
+        out[ANEW], out[SURE] = 1.0 if anew else 0.0, 1.0 if sure else 0.0
         last, distance, low = now, out[DISTANCE], out[BOUND]
-        if out[ENDED] != SINGLE:
+        if out[ENDED] != SINGLE or not sure:
             return i + 1
     return len(poses)

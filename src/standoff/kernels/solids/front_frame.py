@@ -43,8 +43,11 @@ from standoff.kernels.solids.spatial_tolerances import (
 
 # A front that has this many times its first rows, and some, is made anew.
 GROWN, GROWN_BY = 2.0, 256.0
-# Bounds are wanted that last for so many frames like this one.
-FRAMES_AHEAD = 4.0
+# Sizes of a motion after which a front is made anew, so that its rounding stays below that of a
+# query.
+FARTHEST_GONE = 16.0
+# Bounds are wanted that last for so many frames like this one, and for so many sizes at most.
+FRAMES_AHEAD, FARTHEST_AHEAD = 4.0, 0.02
 
 
 @kernel

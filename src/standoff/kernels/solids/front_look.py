@@ -6,15 +6,15 @@ from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.crossing_planes import planes_apart
 from standoff.kernels.solids.front_rows import (
+    FRAME,
+    KEY_REALS,
     ROW_A,
     ROW_AT,
     ROW_B,
     ROW_DISTANCE,
     ROW_FRAME,
-    ROW_WAY,
     ROW_REALS,
-    FRAME,
-    KEY_REALS,
+    ROW_WAY,
     add_row,
     box_of_row,
     drop_row,
@@ -45,11 +45,9 @@ from standoff.kernels.solids.spatial_progress import (
     BISECTIONS,
     BUDGET,
     LEAF_PAIRS,
-    LEAST,
     MET,
     NODE_PAIRS,
     NOWHERE,
-    OPEN,
     ROUNDING,
     SIZE,
     TOLERANCE,
@@ -57,6 +55,7 @@ from standoff.kernels.solids.spatial_progress import (
     farthest,
     goal_of,
     keep_found,
+    leave_open,
     middle,
 )
 from standoff.kernels.solids.spatial_search import node_ints
@@ -177,8 +176,10 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
     way = int(front.rows[ROW_REALS * k + ROW_WAY])
     if way < 0:
         free = beside_plane(pa, pb, goal, travel, best, counts)
-    elif way >= THERE and closed_again(way, goal, (pa, pb, NO_START, 0.0), best, counts):
-        keep_bound(front, k, goal - best[ROUNDING], travel)
+    elif way >= THERE and closed_again(
+        way, lasting_goal(best), (pa, pb, NO_START, 0.0), best, counts
+    ):
+        keep_bound(front, k, lasting_goal(best) - best[ROUNDING], travel)
         return KEPT
     if free < 0.0 and not travel.sure and planes_apart(pa, pb, best[SIZE]):
         free = 0.0
@@ -192,13 +193,20 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
 
 
 @kernel
+def lasting_goal(best):
+    """What is proven of parts at the least distance: half of the tolerance more than is asked, so
+    that it lasts while the solids are nearly at rest."""
+    return goal_of(best) + 0.5 * best[TOLERANCE]
+
+
+@kernel
 def close_as_before(front, k, pair, ahead, best, counts):
     """Does the way that closed a row last close it again, with a bound that lasts if its points are
     far enough apart?"""
     way = int(front.rows[ROW_REALS * k + ROW_WAY])
     if way < 0:
         return -inf
-    goal = goal_of(best)
+    goal = lasting_goal(best)
     aim = aimed(goal, pair[3], ahead)
     if aim > goal + best[TOLERANCE] and closed_again(way, aim, pair, best, counts):
         return aim
@@ -210,7 +218,7 @@ def close_row(front, k, pair, travel, best, minima, counts):
     """Prove of two parts that they are as far apart as the nearest points, and more where they are;
     what no potential proves is cut."""
     pa, pb, _, distance = pair
-    goal, o = goal_of(best), ROW_REALS * k
+    goal, o = lasting_goal(best), ROW_REALS * k
     low = close_as_before(front, k, pair, LEAVES_AHEAD * travel.ahead, best, counts)
     if low < goal:
         aim = aimed(goal, distance, LEAVES_AHEAD * travel.ahead)
@@ -264,29 +272,31 @@ def asked_of(best):
 def settle_row(a, b, front, k, travel, best, minima, counts):
     """Look at a row until it is no longer due, cutting it; whether it is gone. What stays open
     lowers best[OPEN]."""
-    while best[MET] == 0.0 and is_due(front, k, asked_of(best), travel):
-        bound = front.keys[KEY_REALS * k] - travel.gone
+    told = CUT
+    while told == CUT and best[MET] == 0.0 and is_due(front, k, asked_of(best), travel):
         if evaluations(counts) > best[BUDGET]:
-            best[OPEN] = min(best[OPEN], max(bound, 0.0))
+            tell_open(front, k, travel, best)
             return False
         open_up(front, k)
         if front.rows[ROW_REALS * k + ROW_A] < 0.0:
             told = look_at_nodes(a, b, front, k, travel, best, counts)
         else:
             told = look_at_leaves(a, b, front, k, travel, best, minima, counts)
-        if told == GONE_ROW:
-            return True
-        if told == KEPT and is_due_now(front, k, asked_of(best), travel):
-            bound = front.keys[KEY_REALS * k] - travel.gone
-            best[OPEN] = min(best[OPEN], max(bound, 0.0))
-            return False
-        if told == KEPT:
-            return False
-    return False
+        if told == KEPT and is_open(front, k, asked_of(best), travel):
+            tell_open(front, k, travel, best)
+    return told == GONE_ROW
 
 
 @kernel
-def is_due_now(front, k, goal, travel):
-    """After a look: is a row open? One that is shut for this frame alone is not."""
+def tell_open(front, k, travel, best):
+    o = ROW_REALS * k
+    first, other = int(front.rows[o + ROW_A]), int(front.rows[o + ROW_B])
+    bound = max(front.keys[KEY_REALS * k] - travel.gone, 0.0)
+    leave_open(best, first, other, box_of_row(front, k, 0), box_of_row(front, k, 1), bound)
+
+
+@kernel
+def is_open(front, k, goal, travel):
+    """After a look: what is shut in this frame alone is not open."""
     bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
     return bound < goal + travel.gone and shut < travel.gone

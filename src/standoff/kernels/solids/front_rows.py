@@ -1,4 +1,4 @@
-"""The front of a tracked search: pairs of nodes and of leaves' parts that cover all pairs of points,
+"""The front of a tracked search: pairs of nodes and of leaves' parts that hold all pairs of points,
 each with how far B may move before it is to be looked at.
 
 The motion of B in A's frame is a length that only grows: in each frame by what no point of B has

@@ -8,6 +8,7 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_closing import (
+    ALL_WAYS,
     FEW_BOXES,
     MOST_BOXES,
     MOST_PAIRS,
@@ -60,7 +61,10 @@ def below_near(phi, most, near, pair, best, work, counts):
             continue
         q, distance = nearest_of(pa, pb, counts)
         if distance >= near:
-            if by_witness(near, pa, pb, (pa.leaf, pb.leaf, q), FEW_BOXES, best, counts):
+            if (
+                by_witness(near, pa, pb, (pa.leaf, pb.leaf, q), ALL_WAYS, FEW_BOXES, best, counts)
+                >= 0
+            ):
                 continue
         elif on_solid(pa.side, pa.leaf, q[0], q[1]):
             x = leaf_jet(pa.side, pa.leaf, q[0], q[1])[0]

@@ -271,9 +271,10 @@ def closed_off_trim(goal, ahead, a, b, best, counts):
     nearest points on the trimming curves of one: from `goal` on, up to `ahead` more; -inf: none."""
     q, distance = nearest_on_trim(a, b, counts)
     aim = aimed(goal, distance, ahead)
-    if goal <= distance < inf and by_witness(
-        aim, a, b, (a.leaf, b.leaf, q), ALL_WAYS, FEW_BOXES, best, counts
-    ) >= 0:
+    if (
+        goal <= distance < inf
+        and by_witness(aim, a, b, (a.leaf, b.leaf, q), ALL_WAYS, FEW_BOXES, best, counts) >= 0
+    ):
         return aim
     q, distance = nearest_on_trim(b, a, counts)
     if not goal <= distance < inf:

@@ -13,6 +13,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.crossing_planes import planes_apart
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach
 from standoff.kernels.solids.spatial_closing import (
+    ALL_WAYS,
     MOST_PAIRS,
     PAIR_REALS,
     by_own_surface,
@@ -282,7 +283,7 @@ def state_by_points(a, b, goal, joint, best, counts, out):
         return MET
     a, b = facing(a, b), facing(b, a)
     at = (a.leaf, b.leaf, q)
-    if distance >= goal and by_witness(goal, a, b, at, FEW_BOXES, best, counts):
+    if distance >= goal and by_witness(goal, a, b, at, ALL_WAYS, FEW_BOXES, best, counts) >= 0:
         return APART
     return OPEN
 

@@ -32,7 +32,7 @@ from standoff.solids.spatial.pair import Place, PlacedPair, references_of
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
-from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_ROUNDING, PROOF_TOLERANCE
+from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -99,15 +99,9 @@ def spatial_distance(
     """
     placed = [Pose.identity() if pose is None else Pose.of(pose) for pose in (pose_a, pose_b)]
     pair = PlacedPair(as_model(a), as_model(b), *placed)
-    inside: Inside = "A" if _inside(pair, "A") else "B" if _inside(pair, "B") else ""
-    senses = (
-        S.INSIDE if inside == "B" else S.OUTSIDE,
-        S.INSIDE if inside == "A" else S.OUTSIDE,
-    )
-    proof = PROOF_TOLERANCE * pair.size if tolerance is None else tolerance
-    proof = max(
-        proof, 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.pb - pair.pa)))
-    )
+    inside = inside_of(pair)
+    senses = senses_of(inside)
+    proof = pair.provable(PROOF_TOLERANCE * pair.size if tolerance is None else tolerance)
     # two tolerances more, so that what lies beyond is proven to
     horizon = np.inf if within is None else within + 2.0 * proof
     sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=MOST_OPEN)
@@ -115,16 +109,29 @@ def spatial_distance(
     if found.met:
         return _meeting(pair, found, sought, senses)
     if within is not None and found.upper >= horizon and not inside and found.lower >= within:
-        return _answer(pair, replace(found, upper=np.inf), [], Told(Status.FAR))
+        return answer_of(pair, replace(found, upper=np.inf), [], Told(Status.FAR))
     if found.upper >= horizon and not found.n_open:
         raise StandoffError(
             f"No pair of points of {pair.a!r} and {pair.b!r} was found: the normals of a boundary "
             "may be wrong; report the pair with its poses."
         )
-    return _apart(pair, found, senses, inside, sought)
+    return told_apart(pair, found, senses, inside, sought)
 
 
-def _inside(pair: PlacedPair, which: str) -> bool:
+def inside_of(pair: PlacedPair) -> Inside:
+    """Which solid is inside the other's material, if their boundaries do not meet."""
+    return "A" if is_inside(pair, "A") else "B" if is_inside(pair, "B") else ""
+
+
+def senses_of(inside: Inside) -> tuple[int, int]:
+    """From where each boundary is seen."""
+    return (
+        S.INSIDE if inside == "B" else S.OUTSIDE,
+        S.INSIDE if inside == "A" else S.OUTSIDE,
+    )
+
+
+def is_inside(pair: PlacedPair, which: str) -> bool:
     """Is a point of one solid's boundary inside the other?"""
     own, other = (pair.a, pair.b) if which == "A" else (pair.b, pair.a)
     for point in references_of(own):
@@ -162,7 +169,7 @@ def _spread(pair: PlacedPair, rows: Array) -> list[Array]:
     return [rows[k] for k in np.argsort(rank, kind="stable")]
 
 
-def _apart(
+def told_apart(
     pair: PlacedPair,
     found: Found,
     senses: tuple[int, int],
@@ -194,7 +201,7 @@ def _apart(
         smoothness = UNDEFINED
     left, n_left = ((), 0) if proven else open_pairs(pair, found)
     told = Told(status, smoothness, continuum, None, inside, left, n_left)
-    return _answer(pair, found, places, told)
+    return answer_of(pair, found, places, told)
 
 
 def _smoothness(near: list[Place], continuum: Continuum | None) -> Smoothness:
@@ -220,7 +227,7 @@ def _meeting(
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
     if overlap:
-        return _answer(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
+        return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
 
 
@@ -237,7 +244,7 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
         spots = [0.5 * (each.point_a + each.point_b) for each in _places(pair, common, senses, 0.0)]
         overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance)
         if overlap:
-            return _answer(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
+            return answer_of(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
         way = depth_bound(pair, found.tolerance)
     places = near
     if sought.above > 0.0:
@@ -246,9 +253,9 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     met = replace(found, lower=-way)
     if way < np.inf:
         told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
-        return _answer(pair, met, places, told)
+        return answer_of(pair, met, places, told)
     left = around(pair, near)
-    return _answer(pair, met, places, Told(Status.WITHIN, open=left, n_open=len(left)))
+    return answer_of(pair, met, places, Told(Status.WITHIN, open=left, n_open=len(left)))
 
 
 def _nearest(found: Found) -> Array:
@@ -269,7 +276,7 @@ def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
 
 def _is_apart(pair: PlacedPair) -> bool:
     """Is it proven that two solids have no common point?"""
-    if _inside(pair, "A") or _inside(pair, "B"):
+    if is_inside(pair, "A") or is_inside(pair, "B"):
         return False
     found = pair.least(OUTSIDE, Sought(PROOF_TOLERANCE * pair.size))
     return not found.met and found.lower > 0.0
@@ -280,7 +287,7 @@ UNSEEN = NearestPair(
 )  # fmt: skip
 
 
-def _answer(pair: PlacedPair, found: Found, places: list[Place], told: Told) -> SolidProximity:
+def answer_of(pair: PlacedPair, found: Found, places: list[Place], told: Told) -> SolidProximity:
     distance, lower, upper = found.upper, found.lower, found.upper
     if told.overlap:
         distance = upper = -2.0 * told.overlap.radius

@@ -120,6 +120,11 @@ def least_distance(
         _scratch(threading.get_ident()),
         counts,
     )
+    return found_of(best, minima, counts)
+
+
+def found_of(best: Array, minima: Array, counts: Any) -> Found:
+    """What a search has filled."""
     upper, tolerance = float(best[C.LEAST]), float(best[C.TOLERANCE])
     rows = minima.reshape(-1, C.MINIMUM_REALS)[: int(best[C.N_MINIMA]), : C.POINTS]
     rows = rows[rows[:, 0] <= max(upper + tolerance, best[C.ABOVE])]

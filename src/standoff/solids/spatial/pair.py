@@ -18,7 +18,12 @@ from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_di
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import COLLAPSED_FRAME, HAS_DIRECTION, LEAST_LENGTH
+from standoff.solids.spatial.tolerances import (
+    COLLAPSED_FRAME,
+    HAS_DIRECTION,
+    LEAST_LENGTH,
+    PROOF_ROUNDING,
+)
 
 # Reference points, which are tried until one is off the other's boundary.
 REFERENCES = 6
@@ -79,6 +84,11 @@ class PlacedPair:
         """World poses (12,) of both as they were given: R by rows, p."""
         a, b = (np.concatenate([np.ravel(p.rotation), p.translation]) for p in self._given)
         return a, b
+
+    def provable(self, tolerance: float) -> float:
+        """A tolerance, length, that is not below what rounding allows."""
+        away = float(np.linalg.norm(self.pb - self.pa))
+        return max(tolerance, 4.0 * PROOF_ROUNDING * (self.size + away))
 
     def least(self, senses: tuple[int, int], sought: Sought) -> Found:
         """The search between both boundaries, each seen from outside or inside."""

@@ -138,6 +138,24 @@ class Solid(SolidModel, Plotted):
         """
         return spatial_distance(a, b, pose_a, pose_b, within=within)
 
+    def tracked(self, a: Any, b: Any, *given: Any, **options: Any) -> Any:
+        """The tracker that ``so.Tracker`` makes of two solids, or of one and a `Body`.
+
+        Parameters
+        ----------
+        a, b : Solid, Boundary or Body
+            One of them this one.
+        given, options
+            As those of `SolidTracker`.
+
+        Returns
+        -------
+        SolidTracker
+        """
+        from standoff.solids.tracked.tracker import SolidTracker
+
+        return SolidTracker(a, b, *given, **options)
+
     def _figure(self, unit: str) -> Figure:
         from standoff.solids.drawing.spatial_picture import solid_figure
 

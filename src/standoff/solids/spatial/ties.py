@@ -68,18 +68,26 @@ def continuum_of(
 
 
 def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
-    """Places of pairs of leaves with the most parameters first; among them those of planes, and
-    then those of features that have the most places in common."""
+    """Places of pairs of leaves with the most parameters first; among them those of planes, then
+    those within both leaves, as two may have but a corner in common, and then those of features
+    that have the most places in common."""
     leaves = [
         (pair.a.leaves[int(place.row[1])], pair.b.leaves[int(place.row[2])]) for place in places
     ]
     features = [(one.feature, other.feature) for one, other in leaves]
     often = Counter(features)
     ranks = [
-        (-one.dim - other.dim, -_planes(one, other), -often[both])
-        for (one, other), both in zip(leaves, features, strict=True)
+        (-one.dim - other.dim, -_planes(one, other), _held(place, one, other), -often[both])
+        for place, (one, other), both in zip(places, leaves, features, strict=True)
     ]
     return [places[k] for k in sorted(range(len(places)), key=lambda k: ranks[k])]
+
+
+def _held(place: Place, one: Leaf, other: Leaf) -> int:
+    """How many of a place's parameters are at the ends of their leaves."""
+    ends = np.array([*one.reals[:4], *other.reals[:4]]).reshape(4, 2)
+    at = place.row[3:7]
+    return int(((at <= ends[:, 0]) | (at >= ends[:, 1]))[ends[:, 0] < ends[:, 1]].sum())
 
 
 def _planes(*leaves: Leaf) -> int:

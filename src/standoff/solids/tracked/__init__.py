@@ -1,0 +1,1 @@
+"""Two solids that move: their distance kept from frame to frame."""
