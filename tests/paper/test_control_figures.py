@@ -14,11 +14,12 @@ from standoff_studies.paper.control.gains import lags
 from standoff_studies.paper.control.levels import case, runs, watched
 from standoff_studies.paper.control.roots import loci
 
+LONGEST = ("basin", "lyapunov")
 KEYS = ("gains", "stability", "feedback", "basin", "lyapunov")
 
 
 @pytest.mark.parametrize(
-    "key", [pytest.param(k, marks=[pytest.mark.soak] if k == "basin" else []) for k in KEYS]
+    "key", [pytest.param(k, marks=[pytest.mark.soak] if k in LONGEST else []) for k in KEYS]
 )
 def test_every_statement_that_can_hold_does(key: str) -> None:
     (entry,) = chosen([key])
@@ -101,7 +102,10 @@ def test_what_each_feedback_is_good_for() -> None:
     assert DRIFT[0].any()
 
 
-@pytest.mark.parametrize("law", list(LAWS))
+@pytest.mark.parametrize(
+    "law",
+    [pytest.param(k, marks=[pytest.mark.soak] if k == "raw law" else []) for k in LAWS],
+)
 def test_basins(law: str) -> None:
     """DESIGN 2.4: the raw law finds the minimum from a quarter of the starts, the safeguarded
     one from all."""

@@ -37,7 +37,12 @@ HELD = {
 }
 
 
-@pytest.mark.parametrize("name", HELD)
+LONGEST = ("pin flush with its hole", "pin half out of its hole")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(k, marks=[pytest.mark.soak] if k in LONGEST else []) for k in HELD]
+)
 def test_what_is_held_all_round_touches(name: str) -> None:
     a, b, up = HELD[name]
     for first, other, at in ((a, b, up), (b, a, -up)):

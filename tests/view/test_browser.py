@@ -77,6 +77,7 @@ def test_a_dragged_ball_s_distance_is_that_of_the_closed_form(
     assert desk.errors == []
 
 
+@pytest.mark.soak
 def test_one_browser_goes_in_mid_drag_and_another_goes_on(
     page: Any, tab: Callable[..., Any]
 ) -> None:

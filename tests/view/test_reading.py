@@ -60,6 +60,7 @@ def colour(page: Any, picture: Path, point: Any) -> Any:
     return pixels[y - 1 : y + 2, x - 1 : x + 2].mean(axis=(0, 1))
 
 
+@pytest.mark.soak
 def test_a_body_inside_another_is_seen_with_the_depth(
     page_of: Callable[..., Any], tab: Callable[..., Any]
 ) -> None:
