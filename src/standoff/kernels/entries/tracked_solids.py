@@ -18,7 +18,15 @@ from standoff.kernels.solids.front_frame import (
     is_single,
     motion_between,
 )
-from standoff.kernels.solids.front_rows import FRAME, GONE, N_MADE, ROW_REALS, Front, Travel
+from standoff.kernels.solids.front_rows import (
+    FRAME,
+    GONE,
+    N_MADE,
+    ROW_REALS,
+    WAS_SINGLE,
+    Front,
+    Travel,
+)
 from standoff.kernels.solids.spatial_pieces import leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     AT,
@@ -35,11 +43,12 @@ from standoff.kernels.solids.spatial_progress import (
 )
 
 # What a frame tells: how it ended, distance, bound, motion, both points, leaves and parameters,
-# rows of the front, evaluations, 1 where the front was made anew, and 1 where the solids are sure
-# to be apart because they were, and have not moved so far.
+# rows of the front, evaluations, 1 where the front was made anew, 1 where the solids are sure to be
+# apart because they were, and have not moved so far, and 1 where pairs that may be as near as the
+# nearest were passed over.
 ENDED, DISTANCE, BOUND, MOTION, POINT_A, POINT_B, LEAVES, PARAMETERS = 0, 1, 2, 3, 4, 7, 10, 12
-ROWS_TOLD, TAKEN, ANEW, SURE = 16, 17, 18, 19
-TOLD_REALS = 20
+ROWS_TOLD, TAKEN, ANEW, SURE, PASSED = 16, 17, 18, 19, 20
+TOLD_REALS = 21
 N_COUNTS = 5
 # How it ended: proven and at one place; several places or a continuum, to be looked for; not
 # proven; and met, or not known to be apart, so that a query from nothing is to decide.
@@ -61,12 +70,21 @@ def tell(a, b, best, minima, least, front, counts, out):
     for k in range(4):
         out[PARAMETERS + k] = best[AT + k]
     out[ROWS_TOLD], out[TAKEN] = front.store[0], evaluations(counts)
+
+
+@kernel
+def how_ended(a, b, front, travel, best, minima, out):
+    """Into `out` how a frame ended, and whether pairs as near as the nearest were passed over."""
+    out[PASSED] = 0.0
     if best[MET] > 0.0 or out[BOUND] <= 0.0:
         out[ENDED] = TO_ASK
-    elif out[BOUND] < best[LEAST] - best[TOLERANCE]:
+        return
+    if out[BOUND] < best[LEAST] - best[TOLERANCE]:
         out[ENDED] = INTERVAL
-    else:
-        out[ENDED] = SINGLE if is_single(a, b, best, minima) else SEVERAL
+        return
+    single, passed = is_single(a, b, front, travel, best, minima)
+    out[ENDED], out[PASSED] = SINGLE if single else SEVERAL, 1.0 if passed else 0.0
+    front.store[WAS_SINGLE] = 1.0 if single else 0.0
 
 
 # B's pose in A's frame in the frame before, with the least distance and the bound there; its poses
@@ -85,7 +103,7 @@ def solid_frames(solids, way, senses, search, front, counts, told):
     before, poses = way
     a = side_at(solids[0], STILL, senses[0])
     last = side_at(solids[1], before, senses[1])
-    distance, low = before[12], before[13]
+    low = before[13]
     store, keys, rows = front
     kept = Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), len(rows) // ROW_REALS)
     best, minima, c = pointer(search[0], 0), pointer(search[1], 0), pointer(counts, 0)
@@ -104,13 +122,14 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         for k in range(N_COUNTS):
             c[k] = 0
         begin(a, now, best, minima)
-        follow(a, now, kept, distance, step, best, minima, c)
+        follow(a, now, kept, best, minima, c)
         anew = frame(a, now, kept, travel, best, minima, c)
         out = pointer(told, TOLD_REALS * i)
         tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)
+        how_ended(a, now, kept, travel, best, minima, out)
         out[MOTION] = step
         out[ANEW], out[SURE] = 1.0 if anew else 0.0, 1.0 if sure else 0.0
-        last, distance, low = now, out[DISTANCE], out[BOUND]
+        last, low = now, out[BOUND]
         if out[ENDED] != SINGLE or not sure:
             return i + 1
     return len(poses)

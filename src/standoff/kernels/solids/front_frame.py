@@ -7,16 +7,17 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack, small
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.front_look import descend, settle_row
+from standoff.kernels.solids.front_look import descend, settle_row, tied
 from standoff.kernels.solids.front_rows import (
-    FRAME,
     N_MADE,
     N_ROWS,
     ROW_A,
-    ROW_DISTANCE,
-    ROW_FRAME,
+    ROW_B,
     ROW_REALS,
+    WAS_SINGLE,
     add_row,
+    box_of_row,
+    is_passed_over,
 )
 from standoff.kernels.solids.spatial_boxes import node_centre, node_reach
 from standoff.kernels.solids.spatial_minimum import fill_system, solved
@@ -31,7 +32,6 @@ from standoff.kernels.solids.spatial_progress import (
     N_MINIMA,
     NOWHERE,
     SIZE,
-    TOLERANCE,
     keep_found,
 )
 from standoff.kernels.solids.spatial_tolerances import (
@@ -84,17 +84,21 @@ def begin(a, b, best, minima):
 
 
 @kernel
-def follow(a, b, front, last, step, best, minima, counts):
-    """Newton's method in all rows that were among the nearest."""
-    store = front.store
-    for k in range(int(store[N_ROWS])):
+def follow(a, b, front, best, minima, counts):
+    """Newton's method in the rows that hold the witness points."""
+    q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+    leaf_a, leaf_b = best[LEAF_A], best[LEAF_B]
+    for k in range(int(front.store[N_ROWS])):
         o = ROW_REALS * k
-        if (
-            front.rows[o + ROW_A] >= 0.0
-            and front.rows[o + ROW_FRAME] == store[FRAME] - 1.0
-            and last - best[TOLERANCE] <= front.rows[o + ROW_DISTANCE] <= last + 0.1 * step
-        ):
-            descend(a, b, front, k, best, minima, counts)
+        if front.rows[o + ROW_A] == leaf_a and front.rows[o + ROW_B] == leaf_b:
+            box_a, box_b = box_of_row(front, k, 0), box_of_row(front, k, 1)
+            if holds(box_a, q[0], q[1]) and holds(box_b, q[2], q[3]):
+                descend(a, b, front, k, best, minima, counts)
+
+
+@kernel
+def holds(box, u, v):
+    return box.u0 <= u <= box.u1 and box.v0 <= v <= box.v1
 
 
 @kernel
@@ -126,7 +130,7 @@ def frame(a, b, front, travel, best, minima, counts):
 
 
 @small
-def apart_by(best, minima, k, a, b, x, y):
+def apart_by(minima, k, a, b, x, y):
     """How far the points of a minimum are from two others, at most."""
     o = MINIMUM_REALS * k
     p = leaf_jet(a, int(minima[o + 1]), minima[o + 3], minima[o + 4])[0]
@@ -135,17 +139,22 @@ def apart_by(best, minima, k, a, b, x, y):
 
 
 @kernel
-def is_single(a, b, best, minima):
-    """Are the nearest points the only ones, as far as is known, and do all others grow away from
-    them?"""
+def is_single(a, b, front, travel, best, minima):
+    """(are the nearest points the only ones, as far as is known, and do all others grow away from
+    them; were pairs as near passed over, as they had hardly moved)."""
+    passed = False
+    for k in range(int(front.store[N_ROWS])):
+        passed = passed or is_passed_over(front, k, tied(best), travel)
+    if passed and front.store[WAS_SINGLE] == 0.0:
+        return False, True
     leaf_a, leaf_b = int(best[LEAF_A]), int(best[LEAF_B])
     q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     ja, jb = leaf_jet(a, leaf_a, q[0], q[1]), leaf_jet(b, leaf_b, q[2], q[3])
     for k in range(int(best[N_MINIMA])):
-        near = minima[MINIMUM_REALS * k] <= best[LEAST] + best[TOLERANCE]
-        if near and apart_by(best, minima, k, a, b, ja[0], jb[0]) > ONE_PLACE * best[SIZE]:
-            return False
-    return is_steep(a, leaf_a, ja, b, leaf_b, jb, q, best[LEAST])
+        near = minima[MINIMUM_REALS * k] <= tied(best)
+        if near and apart_by(minima, k, a, b, ja[0], jb[0]) > ONE_PLACE * best[SIZE]:
+            return False, passed
+    return is_steep(a, leaf_a, ja, b, leaf_b, jb, q, best[LEAST]), passed
 
 
 @kernel

@@ -2,12 +2,14 @@
 
 from math import inf
 
+from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.crossing_planes import planes_apart
 from standoff.kernels.solids.front_rows import (
     FRAME,
     KEY_REALS,
+    NO_WAY,
     ROW_A,
     ROW_AT,
     ROW_B,
@@ -15,6 +17,7 @@ from standoff.kernels.solids.front_rows import (
     ROW_FRAME,
     ROW_REALS,
     ROW_WAY,
+    UNSEEN,
     add_row,
     box_of_row,
     drop_row,
@@ -40,11 +43,12 @@ from standoff.kernels.solids.spatial_closing import (
     widths,
 )
 from standoff.kernels.solids.spatial_minimum import nearest
-from standoff.kernels.solids.spatial_pieces import OUTSIDE_TRIM, leaf_box, trim_state
+from standoff.kernels.solids.spatial_pieces import OUTSIDE_TRIM, leaf_box, leaf_jet, trim_state
 from standoff.kernels.solids.spatial_progress import (
     BISECTIONS,
     BUDGET,
     LEAF_PAIRS,
+    LEAST,
     MET,
     NODE_PAIRS,
     NOWHERE,
@@ -158,7 +162,15 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
     """Bound a pair of leaves' parts, or cut it."""
     pa, pb = parts_of_row(a, b, front, k)
     counts[LEAF_PAIRS] += 1
-    goal = goal_of(best)
+    goal, o = goal_of(best), ROW_REALS * k
+    if front.rows[o + ROW_WAY] == UNSEEN:
+        if (
+            trim_state(a, pa.leaf, pa.box) == OUTSIDE_TRIM
+            or trim_state(b, pb.leaf, pb.box) == OUTSIDE_TRIM
+        ):
+            drop_row(front, k)
+            return GONE_ROW
+        front.rows[o + ROW_WAY] = NO_WAY
     low, free = no_pair(pa, pb, goal, best[ROUNDING], travel.turn)
     keep_bound(front, k, low, travel)
     if free == inf:
@@ -166,21 +178,12 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
     if free > 0.0:
         keep_shut(front, k, free, travel)
         return KEPT
-    if (
-        trim_state(a, pa.leaf, pa.box) == OUTSIDE_TRIM
-        or trim_state(b, pb.leaf, pb.box) == OUTSIDE_TRIM
-    ):
-        drop_row(front, k)
-        return GONE_ROW
-    free = -1.0
-    way = int(front.rows[ROW_REALS * k + ROW_WAY])
-    if way < 0:
-        free = beside_plane(pa, pb, goal, travel, best, counts)
-    elif way >= THERE and closed_again(
-        way, lasting_goal(best), (pa, pb, NO_START, 0.0), best, counts
-    ):
-        keep_bound(front, k, lasting_goal(best) - best[ROUNDING], travel)
-        return KEPT
+    if front.rows[o + ROW_WAY] >= 0.0:
+        low = close_as_before(front, k, pa, pb, travel, best, counts)
+        if low >= goal:
+            keep_bound(front, k, low - best[ROUNDING], travel)
+            return KEPT
+    free = beside_plane(pa, pb, goal, travel, best, counts)
     if free < 0.0 and not travel.sure and planes_apart(pa, pb, best[SIZE]):
         free = 0.0
     if free >= 0.0:
@@ -200,17 +203,24 @@ def lasting_goal(best):
 
 
 @kernel
-def close_as_before(front, k, pair, ahead, best, counts):
-    """Does the way that closed a row last close it again, with a bound that lasts if its points are
-    far enough apart?"""
+def tied(best):
+    """Pairs of points up to this distance are as near as the nearest, as far as is proven."""
+    return best[LEAST] + best[TOLERANCE]
+
+
+@kernel
+def close_as_before(front, k, pa, pb, travel, best, counts):
+    """A bound beyond what is tied, by the way that closed a row last, through the points where
+    Newton's method came to last, which need not be the nearest now; -inf: none."""
     way = int(front.rows[ROW_REALS * k + ROW_WAY])
-    if way < 0:
+    q = start_of_row(front, k)
+    x = leaf_jet(pa.side, pa.leaf, q[0], q[1])[0]
+    y = leaf_jet(pb.side, pb.leaf, q[2], q[3])[0]
+    distance = norm(sub(y, x))
+    aim = aimed(goal_of(best), distance, LEAVES_AHEAD * travel.ahead)
+    if way >= THERE or aim <= tied(best) + best[ROUNDING]:
         return -inf
-    goal = lasting_goal(best)
-    aim = aimed(goal, pair[3], ahead)
-    if aim > goal + best[TOLERANCE] and closed_again(way, aim, pair, best, counts):
-        return aim
-    return goal if closed_again(way, goal, pair, best, counts) else -inf
+    return aim if closed_again(way, aim, (pa, pb, q, distance), best, counts) else -inf
 
 
 @kernel
@@ -219,19 +229,24 @@ def close_row(front, k, pair, travel, best, minima, counts):
     what no potential proves is cut."""
     pa, pb, _, distance = pair
     goal, o = lasting_goal(best), ROW_REALS * k
-    low = close_as_before(front, k, pair, LEAVES_AHEAD * travel.ahead, best, counts)
-    if low < goal:
-        aim = aimed(goal, distance, LEAVES_AHEAD * travel.ahead)
+    way, aim = int(front.rows[o + ROW_WAY]), goal
+    if way >= 0 and not closed_again(way, goal, pair, best, counts):
         way = -1
-        if aim > goal + best[TOLERANCE]:
-            way = closed_to(aim, -1, pair, FEW_BOXES, best, minima, counts)
-        if way < 0:
+    if way < 0 or aimed(goal, distance, LEAVES_AHEAD * travel.ahead) > tied(best):
+        aim = aimed(goal, distance, LEAVES_AHEAD * travel.ahead)
+        more = -1
+        if aim > tied(best):
+            more = closed_to(aim, -1, pair, FEW_BOXES, best, minima, counts)
+        if more >= 0:
+            way = more
+        else:
             aim = goal
-            way = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
-        if way < 0 and distance >= goal:
-            way = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
-        front.rows[o + ROW_WAY] = way
-        low = aim if way >= 0 else -inf
+    if way < 0:
+        way = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
+    if way < 0 and distance >= goal:
+        way = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
+    front.rows[o + ROW_WAY] = way
+    low = aim if way >= 0 else -inf
     if low < goal and distance < goal:
         low = closed_off_trim(goal, LEAVES_AHEAD * travel.ahead, pa, pb, best, counts)
     if low >= goal:

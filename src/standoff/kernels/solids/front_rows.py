@@ -14,15 +14,17 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 
 # What a row holds: leaves (-1 - node where it is a node), both boxes, where Newton's method came
-# to last, at which distance, and in which frame; by which way it was closed last (-1: none).
+# to last, at which distance, and in which frame; by which way it was closed last.
 ROW_REALS = 17
 ROW_A, ROW_B, ROW_BOXES, ROW_AT, ROW_DISTANCE, ROW_FRAME, ROW_WAY = 0, 1, 2, 10, 14, 15, 16
+# Of a row: not yet known whether it is on both faces; not closed by any potential.
+UNSEEN, NO_WAY = -2.0, -1.0
 # Of each row two numbers: bound and shut, both plus the motion when they were proven.
 KEY_REALS = 2
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
-# the front had when it was made, how many frames there were.
-N_ROWS, GONE, N_MADE, FRAME = 0, 1, 2, 3
-STORE_REALS = 4
+# the front had when it was made, how many frames there were, whether the last was at one place.
+N_ROWS, GONE, N_MADE, FRAME, WAS_SINGLE = 0, 1, 2, 3, 4
+STORE_REALS = 5
 
 
 class Front(NamedTuple):
@@ -77,7 +79,7 @@ def put_row(front, k, i, j, box_a, box_b):
     b = o + ROW_BOXES
     r[b], r[b + 1], r[b + 2], r[b + 3] = box_a.u0, box_a.u1, box_a.v0, box_a.v1
     r[b + 4], r[b + 5], r[b + 6], r[b + 7] = box_b.u0, box_b.u1, box_b.v0, box_b.v1
-    r[o + ROW_FRAME], r[o + ROW_WAY] = -1.0, -1.0
+    r[o + ROW_FRAME], r[o + ROW_WAY] = -1.0, UNSEEN
     front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1] = -inf, -inf
 
 
@@ -129,3 +131,12 @@ def keep_bound(front, k, low, travel):
 @kernel
 def keep_shut(front, k, free, travel):
     front.keys[KEY_REALS * k + 1] = max(front.keys[KEY_REALS * k + 1], free + travel.gone)
+
+
+@kernel
+def is_passed_over(front, k, most, travel):
+    """May a row that was not looked at in this frame hold points as near as `most`?"""
+    if front.rows[ROW_REALS * k + ROW_FRAME] == front.store[FRAME]:
+        return False
+    bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
+    return bound < most + travel.gone and shut < travel.gone

@@ -59,6 +59,8 @@ PAIR_REALS = 9
 MOST_PAIRS = 200
 # Boxes that a potential is bounded over, of one piece: few at first, for another may do.
 FEW_BOXES, MOST_BOXES = 20, 400
+# The same, where one potential did before.
+AGAIN_BOXES = 8
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
 ALL_WAYS = (0, 6)
 OWN_A, OWN_B, HERE, THERE = 0, 1, 2, 9
@@ -315,15 +317,15 @@ def closed_again(way, goal, pair, best, counts):
     """Does the way that `closed_to` told of a pair, at another time, prove a goal of it?"""
     a, b, q, _ = pair
     if way == OWN_A:
-        return by_own_surface(goal, a, b, (q[2], q[3]), FEW_BOXES, counts)
+        return by_own_surface(goal, a, b, (q[2], q[3]), AGAIN_BOXES, counts)
     if way == OWN_B:
-        return by_own_surface(goal, b, a, (q[0], q[1]), FEW_BOXES, counts)
+        return by_own_surface(goal, b, a, (q[0], q[1]), AGAIN_BOXES, counts)
     if way < THERE:
         at, one = (a.leaf, b.leaf, q), way - HERE
     else:
         q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
         at, one = (int(best[LEAF_A]), int(best[LEAF_B]), q), way - THERE
-    return by_witness(goal, a, b, at, (one, one), FEW_BOXES, best, counts) >= 0
+    return by_witness(goal, a, b, at, (one, one), AGAIN_BOXES, best, counts) >= 0
 
 
 @kernel

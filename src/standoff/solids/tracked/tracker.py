@@ -158,8 +158,8 @@ class SolidTracker(KeepsReadOnly):
         ValueError
             A state of another pair, or no pose.
         """
-        made, answers = self.run(state, [Pose.of(pose_a)], [Pose.of(pose_b)])
-        return made, answers[0]
+        made, _ = self.run(state, Pose.of(pose_a), Pose.of(pose_b))
+        return made, made.proximity
 
     def run(
         self, state: SolidState, poses_a: PosesLike, poses_b: PosesLike
@@ -265,7 +265,7 @@ class _Run:
         return frames.kept(), at
 
     def _pair(self, k: int) -> PlacedPair:
-        poses = (Pose(row[:9].reshape(3, 3), row[9:]) for row in (self.a[k], self.b[k]))
+        poses = (_checked(row) for row in (self.a[k], self.b[k]))
         return PlacedPair(self.tracker.a, self.tracker.b, *poses)
 
     def _ask(self, k: int) -> Front | None:
@@ -286,6 +286,8 @@ class _Run:
             return False
         if row[T.ENDED] != T.SINGLE:
             sought, found = self.tracker._sought(pair), frames.found()
+            if row[T.PASSED]:  # all that is as near is to be found
+                found = pair.least(senses_of(inside), sought)
             answer = told_apart(pair, found, senses_of(inside), inside, sought)
             self.special[k] = _counted(answer, row)
         return True
@@ -320,8 +322,12 @@ def _found(row: Array, tolerance: float) -> Found:
 
 
 def _poses_of(pair: PlacedPair) -> tuple[Pose, Pose]:
-    one, other = (Pose(row[:9].reshape(3, 3), row[9:]) for row in pair.poses)
+    one, other = (_checked(row) for row in pair.poses)
     return one, other
+
+
+def _checked(row: Array) -> Pose:
+    return Pose.from_checked(row[:9].reshape(3, 3), row[9:])
 
 
 def _read(given: Any, name: str) -> Array:
