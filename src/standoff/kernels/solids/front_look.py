@@ -70,6 +70,9 @@ PLANE_BOXES = 1
 NO_START = (0.0, 0.0, 0.0, 0.0)
 # Of a pair of leaves' parts bounds are wanted that last for so many times more motion.
 LEAVES_AHEAD = 8.0
+# Of a row that is proven to be no farther than is asked, another way is sought in one frame of so
+# many.
+RETRIED = 16
 # What became of a row: it stays as it is, its parts are in its place, or it is gone.
 KEPT, CUT, GONE_ROW = 0, 1, 2
 
@@ -183,7 +186,9 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
         if low >= goal:
             keep_bound(front, k, low - best[ROUNDING], travel)
             return KEPT
-    free = beside_plane(pa, pb, goal, travel, best, counts)
+    free = -1.0
+    if front.rows[o + ROW_WAY] < 0.0:
+        free = beside_plane(pa, pb, goal, travel, best, counts)
     if free < 0.0 and not travel.sure and planes_apart(pa, pb, best[SIZE]):
         free = 0.0
     if free >= 0.0:
@@ -224,31 +229,41 @@ def close_as_before(front, k, pa, pb, travel, best, counts):
 
 
 @kernel
+def close_again(front, k, pair, aim, best, counts):
+    """A bound by the way that closed a row last, of parts whose nearest points are known: `aim`, or
+    the least that lasts; -inf: none."""
+    way, goal = int(front.rows[ROW_REALS * k + ROW_WAY]), lasting_goal(best)
+    if way < 0:
+        return -inf
+    if aim > tied(best):
+        if closed_again(way, aim, pair, best, counts):
+            return aim
+        if int(front.store[FRAME]) % RETRIED == 0:  # another way may prove more
+            return -inf
+    return goal if closed_again(way, goal, pair, best, counts) else -inf
+
+
+@kernel
 def close_row(front, k, pair, travel, best, minima, counts):
     """Prove of two parts that they are as far apart as the nearest points, and more where they are;
     what no potential proves is cut."""
     pa, pb, _, distance = pair
-    goal, o = lasting_goal(best), ROW_REALS * k
-    way, aim = int(front.rows[o + ROW_WAY]), goal
-    if way >= 0 and not closed_again(way, goal, pair, best, counts):
+    goal, ahead = lasting_goal(best), LEAVES_AHEAD * travel.ahead
+    aim = aimed(goal, distance, ahead)
+    low = close_again(front, k, pair, aim, best, counts)
+    if low < goal:
         way = -1
-    if way < 0 or aimed(goal, distance, LEAVES_AHEAD * travel.ahead) > tied(best):
-        aim = aimed(goal, distance, LEAVES_AHEAD * travel.ahead)
-        more = -1
         if aim > tied(best):
-            more = closed_to(aim, -1, pair, FEW_BOXES, best, minima, counts)
-        if more >= 0:
-            way = more
-        else:
+            way = closed_to(aim, -1, pair, FEW_BOXES, best, minima, counts)
+        if way < 0:
             aim = goal
-    if way < 0:
-        way = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
-    if way < 0 and distance >= goal:
-        way = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
-    front.rows[o + ROW_WAY] = way
-    low = aim if way >= 0 else -inf
+            way = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
+        if way < 0 and distance >= goal:
+            way = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
+        front.rows[ROW_REALS * k + ROW_WAY] = way
+        low = aim if way >= 0 else -inf
     if low < goal and distance < goal:
-        low = closed_off_trim(goal, LEAVES_AHEAD * travel.ahead, pa, pb, best, counts)
+        low = closed_off_trim(goal, ahead, pa, pb, best, counts)
     if low >= goal:
         keep_bound(front, k, low - best[ROUNDING], travel)
         return KEPT
