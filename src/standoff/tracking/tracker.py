@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,7 @@ from standoff.kernels.entries.tracker import moved, moved_by_poses, value, value
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
+from standoff.tracking.by_kind import MadeByKind
 from standoff.tracking.inputs import check_pair, plain, same_body
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, checked_law
@@ -33,8 +34,7 @@ if TYPE_CHECKING:
     from standoff.tracking.places import PlaceLike
 
 Array = NDArray[np.float64]
-# of every step: a name less to look up
-ARRAY, empty = np.ndarray, np.empty
+ARRAY, empty = np.ndarray, np.empty  # of every step: a name less to look up
 N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 
 INSIDE = K.BLOCK_STATE + K.INSIDE  # was a block's frame solved in contact?
@@ -43,21 +43,9 @@ HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", 
 """What runs and the studies need but users do not."""
 
 
-@runtime_checkable
-class Tracked(Protocol):
-    """What is no `Body`, and makes a tracker with another by itself: a solid."""
-
-    def tracked(self, a: Any, b: Any, *given: Any, **options: Any) -> Any:
-        """A tracker of A and B, one of which is this one, with the options of its kind."""
-        ...
-
-
 @hides(*HIDDEN)
-class Tracker(KeepsReadOnly):
-    """Keeps the minimum distance of two convex bodies while they move.
-
-    Of a `Solid` and another, or a body, ``so.Tracker(a, b)`` makes a `SolidTracker`, which has its
-    own options.
+class Tracker(MadeByKind, KeepsReadOnly):
+    """Keeps the minimum distance of two convex bodies while they move; of solids `SolidTracker`.
 
     Parameters
     ----------
@@ -88,13 +76,6 @@ class Tracker(KeepsReadOnly):
         A number that is not positive, a feedback that is not stable at `dt`, a planar body with a
         spatial one, two half-spaces.
     """
-
-    def __new__(cls, a: Any = None, b: Any = None, *given: Any, **options: Any) -> Any:
-        """Of solids, which are above this layer, the tracker that they make."""
-        makers = [each for each in (a, b) if isinstance(each, Tracked)]
-        if makers:
-            return makers[0].tracked(a, b, *given, **options)
-        return super().__new__(cls)
 
     def __init__(
         self,

@@ -93,10 +93,10 @@ WAY = types.Tuple((READ, READ_ROWS))
 # As `boundary_distance` has them: where the witness points were stands in the first.
 SEARCH = types.Tuple((WRITE, WRITE))
 # What is kept beside the rows of the front, their keys, the rows.
-FRONT = types.Tuple((WRITE, WRITE, WRITE))
+FRONT_ARRAYS = types.Tuple((WRITE, WRITE, WRITE))
 
 
-@entry(SOLIDS, WAY, INTS, SEARCH, FRONT, WRITE_INTS, ROWS, work="solids")
+@entry(SOLIDS, WAY, INTS, SEARCH, FRONT_ARRAYS, WRITE_INTS, ROWS, work="solids")
 def solid_frames(solids, way, senses, search, front, counts, told):
     """Frames one after the other into the rows of `told`, up to one that does not end SINGLE, or in
     which the solids are not sure to be apart; how many were done."""
