@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from families.solid_shapes import ball, bolt, bracket, egg, peg, ring, socket, tube
+from families.solid_shapes import ball, bolt, bracket, egg, peg, prism, ring, socket, tube
 from standoff.solids import Solid, SolidAnswers, SolidState, SolidTracker
 from standoff.solids.tracked import front
 
@@ -142,6 +142,48 @@ def test_a_peg_in_its_hole_is_a_continuum_in_each_frame() -> None:
         is_as_cold(answers[k], so.distance(hole, pin, STILL, pose))
 
 
+TABLE = prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
+"""A bridge upside down: two feet at y = 1."""
+
+
+@pytest.mark.parametrize("name", ["box", "feet"])
+def test_what_ties_after_a_tilt_is_told(name: str) -> None:
+    """From one vertex to a face, or to two feet, on a plane: at once, at rest, and back again."""
+    ground = prism([(-9, 2), (9, 2), (9, 3), (-9, 3)], 9.0)
+    other = TABLE if name == "feet" else prism([(0, 0), (2, 0), (2, 1), (0, 1)], 1.0)
+    tilts = [2e-3, 1e-3, 0.0, 0.0, 1e-12, 1e-6, 1e-3, 0.0]
+    poses = np.array(
+        [
+            placed(Rotation.from_rotvec(tilt * np.array([1.0, 0.0, 2.0])).as_matrix(), [0, 0, 3])
+            for tilt in tilts
+        ]
+    )
+    tracker = so.Tracker(ground, other)
+    _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
+    for k, pose in enumerate(poses):
+        cold = so.distance(ground, other, STILL, pose)
+        is_as_cold(answers[k], cold)
+        assert answers[k].smoothness is cold.smoothness
+    flat = so.Status.CONTINUUM
+    assert [status is flat for status in answers.status[1:4]] == [False, True, True]
+
+
+def test_a_tracker_s_own_tolerance_counts() -> None:
+    a, b = PAIRS["egg, bracket"]
+    pose = placed(np.eye(3), [3.0, 0.2, 0.1])
+    rough, fine = SolidTracker(a, b, tolerance=1e-3), SolidTracker(a, b)
+    state = rough.start(STILL, pose)
+    _, answer = fine.step(state, STILL, placed(np.eye(3), [3.001, 0.2, 0.1]))
+    assert answer.upper_bound - answer.lower_bound < 1e-8
+    _, answer = rough.step(fine.start(STILL, pose), STILL, pose)
+    assert 5e-4 < answer.upper_bound - answer.lower_bound <= 1e-3
+    # far away roundings are greater, and the tolerance with them
+    far = placed(np.eye(3), [3.0e6, 0.2, 0.1])
+    _, answers = fine.run(fine.start(STILL, pose), STILL, np.array([pose, far, pose]))
+    for k, at in enumerate((pose, far, pose)):
+        is_as_cold(answers[k], so.distance(a, b, STILL, at))
+
+
 def test_states_are_values_and_runs_are_steps() -> None:
     a, b = PAIRS["bolt, tube"]
     poses = wandering(a, b, 30, 4e-3, np.random.default_rng(2), 0.1)
@@ -225,6 +267,8 @@ def test_what_is_no_pair_of_solids() -> None:
     a, b = PAIRS["bolt, tube"]
     with pytest.raises(so.StandoffError, match="Body B, a half-space, is not bounded"):
         so.Tracker(a, so.shapes.halfspace())
+    with pytest.raises(so.StandoffError, match="Body A is a point: so"):
+        so.Tracker(so.shapes.point(), b)
     with pytest.raises(TypeError, match="law"):
         so.Tracker(a, b, law=so.PaperLaw())
     tracker = so.Tracker(a, so.shapes.box((1.0, 1.0, 1.0)))

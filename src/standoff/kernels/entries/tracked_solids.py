@@ -4,6 +4,7 @@ from math import inf
 
 from numba import types
 
+from standoff.kernels.algebra.vectors import norm
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INTS, READ, READ_ROWS, ROWS, WRITE, WRITE_INTS
 from standoff.kernels.entries.solids import SOLIDS, STILL, side_at
@@ -21,9 +22,8 @@ from standoff.kernels.solids.front_frame import (
 from standoff.kernels.solids.front_rows import (
     FRAME,
     GONE,
-    N_MADE,
+    N_ROWS,
     ROW_REALS,
-    WAS_SINGLE,
     Front,
     Travel,
 )
@@ -33,22 +33,23 @@ from standoff.kernels.solids.spatial_progress import (
     LEAF_A,
     LEAF_B,
     LEAST,
+    MEETING,
     MET,
     N_MINIMA,
     N_OPEN,
     OPEN,
+    ROUNDING,
     SIZE,
     TOLERANCE,
     evaluations,
 )
 
 # What a frame tells: how it ended, distance, bound, motion, both points, leaves and parameters,
-# rows of the front, evaluations, 1 where the front was made anew, 1 where the solids are sure to be
-# apart because they were, and have not moved so far, and 1 where pairs that may be as near as the
-# nearest were passed over.
+# rows of the front, evaluations, 1 where the front was made anew, and 1 where the solids are sure
+# to be apart because they were, and have not moved so far.
 ENDED, DISTANCE, BOUND, MOTION, POINT_A, POINT_B, LEAVES, PARAMETERS = 0, 1, 2, 3, 4, 7, 10, 12
-ROWS_TOLD, TAKEN, ANEW, SURE, PASSED = 16, 17, 18, 19, 20
-TOLD_REALS = 21
+ROWS_TOLD, TAKEN, ANEW, SURE = 16, 17, 18, 19
+TOLD_REALS = 20
 N_COUNTS = 5
 # How it ended: proven and at one place; several places or a continuum, to be looked for; not
 # proven; and met, or not known to be apart, so that a query from nothing is to decide.
@@ -73,23 +74,27 @@ def tell(a, b, best, minima, least, front, counts, out):
 
 
 @kernel
-def how_ended(a, b, front, travel, best, minima, out):
-    """Into `out` how a frame ended, and whether pairs as near as the nearest were passed over."""
-    out[PASSED] = 0.0
-    if best[MET] > 0.0 or out[BOUND] <= 0.0:
-        out[ENDED] = TO_ASK
-        return
-    if out[BOUND] < best[LEAST] - best[TOLERANCE]:
-        out[ENDED] = INTERVAL
-        return
-    single, passed = is_single(a, b, front, travel, best, minima)
-    out[ENDED], out[PASSED] = SINGLE if single else SEVERAL, 1.0 if passed else 0.0
-    front.store[WAS_SINGLE] = 1.0 if single else 0.0
+def how_ended(a, b, best, minima, low):
+    if best[MET] > 0.0 or low <= 0.0:
+        return TO_ASK
+    if low < best[LEAST] - best[TOLERANCE]:
+        return INTERVAL
+    return SINGLE if is_single(a, b, best, minima) else SEVERAL
+
+
+@kernel
+def ask(best, asked, away):
+    """What is asked of a frame, at how far the solids' frames are from each other: the tolerance,
+    and the share of the sizes and the distance that is for rounding, stand in `asked`."""
+    best[ROUNDING] = asked[1] * (best[SIZE] + away)
+    best[TOLERANCE] = max(asked[0], 4.0 * best[ROUNDING])
+    best[MEETING] = best[TOLERANCE]
+    best[LEAST], best[OPEN], best[MET], best[N_MINIMA], best[N_OPEN] = inf, inf, 0.0, 0.0, 0.0
 
 
 # B's pose in A's frame in the frame before, with the least distance and the bound there; its poses
-# now.
-WAY = types.Tuple((READ, READ_ROWS))
+# now; what is asked.
+WAY = types.Tuple((READ, READ_ROWS, READ))
 # As `boundary_distance` has them: where the witness points were stands in the first.
 SEARCH = types.Tuple((WRITE, WRITE))
 # What is kept beside the rows of the front, their keys, the rows.
@@ -100,7 +105,7 @@ FRONT_ARRAYS = types.Tuple((WRITE, WRITE, WRITE))
 def solid_frames(solids, way, senses, search, front, counts, told):
     """Frames one after the other into the rows of `told`, up to one that does not end SINGLE, or in
     which the solids are not sure to be apart; how many were done."""
-    before, poses = way
+    before, poses, asked = way
     a = side_at(solids[0], STILL, senses[0])
     last = side_at(solids[1], before, senses[1])
     low = before[13]
@@ -111,14 +116,14 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         now = side_at(solids[1], poses[i], senses[1])
         step, radius = motion_between(last, now, best[SIZE])
         sure = step < low
-        if store[GONE] > FARTHEST_GONE * best[SIZE]:
-            store[GONE], store[N_MADE] = 0.0, 0.0
         store[GONE] += step
+        if store[GONE] > FARTHEST_GONE * best[SIZE]:
+            store[GONE], store[N_ROWS] = 0.0, 0.0
         store[FRAME] += 1.0
         ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
         afar = far_side(a, now, radius)
         travel = Travel(store[GONE], ahead, radius, 1.0 / radius, afar, sure)
-        best[LEAST], best[OPEN], best[MET], best[N_MINIMA], best[N_OPEN] = inf, inf, 0.0, 0.0, 0.0
+        ask(best, asked, norm(now.pose.p))
         for k in range(N_COUNTS):
             c[k] = 0
         begin(a, now, best, minima)
@@ -126,8 +131,7 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         anew = frame(a, now, kept, travel, best, minima, c)
         out = pointer(told, TOLD_REALS * i)
         tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)
-        how_ended(a, now, kept, travel, best, minima, out)
-        out[MOTION] = step
+        out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND]), step
         out[ANEW], out[SURE] = 1.0 if anew else 0.0, 1.0 if sure else 0.0
         last, low = now, out[BOUND]
         if out[ENDED] != SINGLE or not sure:

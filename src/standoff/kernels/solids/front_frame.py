@@ -1,7 +1,7 @@
 """One frame of a tracked search: the witness points go on by Newton's method, and the rows of the
 front that are due are looked at."""
 
-from math import asin
+from math import asin, inf
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
@@ -9,12 +9,12 @@ from standoff.kernels.compiler.decorators import kernel, reals_on_stack, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.front_look import descend, settle_row, tied
 from standoff.kernels.solids.front_rows import (
+    MAKING,
     N_MADE,
     N_ROWS,
     ROW_A,
     ROW_B,
     ROW_REALS,
-    WAS_SINGLE,
     add_row,
     box_of_row,
     is_passed_over,
@@ -30,6 +30,7 @@ from standoff.kernels.solids.spatial_progress import (
     MET,
     MINIMUM_REALS,
     N_MINIMA,
+    N_OPEN,
     NOWHERE,
     SIZE,
     keep_found,
@@ -62,7 +63,8 @@ def motion_between(before, now, size):
         square += (R[k] - Q[k]) * (R[k] - Q[k])
     # of two rotations the root of the sum of squares is 2 sqrt(2) sin(angle / 2)
     angle = 2.0 * asin(min(sqrt(square / 8.0), 1.0))
-    return (shift + angle * radius) * (1.0 + MOTION_SPARE) + MOTION_SPARE * size, radius
+    spare = MOTION_SPARE * (size + norm(now.pose.p) + norm(before.pose.p))
+    return (shift + angle * radius) * (1.0 + MOTION_SPARE) + spare, radius
 
 
 @kernel
@@ -104,28 +106,33 @@ def holds(box, u, v):
 @kernel
 def make_front(front):
     """One row, of both roots."""
-    front.store[N_ROWS] = 0.0
-    add_row(front, -1, -1, NOWHERE, NOWHERE, (0.0, 0.0, 0.0, 0.0), False)
+    front.store[N_ROWS], front.store[MAKING] = 0.0, 1.0
+    add_row(front, -1, -1, (NOWHERE, NOWHERE), -inf, (0.0, 0.0, 0.0, 0.0), False)
 
 
 @kernel
 def has_grown(front):
-    return front.store[N_ROWS] > GROWN * front.store[N_MADE] + GROWN_BY
+    made = front.store[MAKING] == 0.0
+    return made and front.store[N_ROWS] > GROWN * front.store[N_MADE] + GROWN_BY
 
 
 @kernel
 def frame(a, b, front, travel, best, minima, counts):
     """Fill `best` and `minima` as a search does; whether the front was made anew."""
     store = front.store
-    anew = store[N_MADE] == 0.0 or has_grown(front)
+    anew = store[N_ROWS] == 0.0 or has_grown(front)
     if anew:
         make_front(front)
     k = 0
     while k < int(store[N_ROWS]) and best[MET] == 0.0:
         if not settle_row(a, b, front, k, travel, best, minima, counts):
             k += 1
-    if anew:
-        store[N_MADE] = store[N_ROWS]
+    if store[MAKING] > 0.0 and best[N_OPEN] == 0.0:
+        store[N_MADE], store[MAKING] = store[N_ROWS], 0.0
+    # what rests, and may be as near as the nearest, is gone through all the same
+    for k in range(int(store[N_ROWS])):
+        if best[MET] == 0.0 and is_passed_over(front, k, tied(best), travel):
+            descend(a, b, front, k, best, minima, counts)
     return anew
 
 
@@ -139,22 +146,17 @@ def apart_by(minima, k, a, b, x, y):
 
 
 @kernel
-def is_single(a, b, front, travel, best, minima):
-    """(are the nearest points the only ones, as far as is known, and do all others grow away from
-    them; were pairs as near passed over, as they had hardly moved)."""
-    passed = False
-    for k in range(int(front.store[N_ROWS])):
-        passed = passed or is_passed_over(front, k, tied(best), travel)
-    if passed and front.store[WAS_SINGLE] == 0.0:
-        return False, True
+def is_single(a, b, best, minima):
+    """Are the nearest points the only ones, as far as is known, and do all others grow away from
+    them?"""
     leaf_a, leaf_b = int(best[LEAF_A]), int(best[LEAF_B])
     q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     ja, jb = leaf_jet(a, leaf_a, q[0], q[1]), leaf_jet(b, leaf_b, q[2], q[3])
     for k in range(int(best[N_MINIMA])):
         near = minima[MINIMUM_REALS * k] <= tied(best)
         if near and apart_by(minima, k, a, b, ja[0], jb[0]) > ONE_PLACE * best[SIZE]:
-            return False, passed
-    return is_steep(a, leaf_a, ja, b, leaf_b, jb, q, best[LEAST]), passed
+            return False
+    return is_steep(a, leaf_a, ja, b, leaf_b, jb, q, best[LEAST])
 
 
 @kernel

@@ -19,6 +19,7 @@ from standoff.kernels.solids.front_rows import (
     ROW_WAY,
     UNSEEN,
     add_row,
+    bound_key,
     box_of_row,
     drop_row,
     is_due,
@@ -67,7 +68,7 @@ from standoff.kernels.solids.spatial_tolerances import SHORTEST_PART
 
 # Boxes that a pair with a plane is looked at with.
 PLANE_BOXES = 1
-NO_START = (0.0, 0.0, 0.0, 0.0)
+NO_START, NO_BOXES = (0.0, 0.0, 0.0, 0.0), (NOWHERE, NOWHERE)
 # Of a pair of leaves' parts bounds are wanted that last for so many times more motion.
 LEAVES_AHEAD = 8.0
 # Of a row that is proven to be no farther than is asked, another way is sought in one frame of so
@@ -91,22 +92,23 @@ def look_at_nodes(a, b, front, k, travel, best, counts):
     if shut > travel.ahead:
         keep_shut(front, k, shut, travel)
         return KEPT
+    key = bound_key(front, k)
     ra, rb = node_ints(a, i), node_ints(b, j)
     leaf_a, leaf_b = a.own[ra + 2], b.own[rb + 2]
     if leaf_a >= 0 and leaf_b >= 0:
         if shut > 0.0:
             keep_shut(front, k, shut, travel)
             return KEPT
-        put_row(front, k, leaf_a, leaf_b, leaf_box(a, leaf_a), leaf_box(b, leaf_b))
+        put_row(front, k, leaf_a, leaf_b, leaf_box(a, leaf_a), leaf_box(b, leaf_b), key)
         return CUT
     if leaf_b >= 0 or (leaf_a < 0 and node_reach(a, i) >= node_reach(b, j)):
-        if not add_row(front, -1 - a.own[ra + 1], -1 - j, NOWHERE, NOWHERE, NO_START, False):
+        if not add_row(front, -1 - a.own[ra + 1], -1 - j, NO_BOXES, key, NO_START, False):
             return KEPT
-        put_row(front, k, -1 - a.own[ra], -1 - j, NOWHERE, NOWHERE)
+        put_row(front, k, -1 - a.own[ra], -1 - j, NOWHERE, NOWHERE, key)
         return CUT
-    if not add_row(front, -1 - i, -1 - b.own[rb + 1], NOWHERE, NOWHERE, NO_START, False):
+    if not add_row(front, -1 - i, -1 - b.own[rb + 1], NO_BOXES, key, NO_START, False):
         return KEPT
-    put_row(front, k, -1 - i, -1 - b.own[rb], NOWHERE, NOWHERE)
+    put_row(front, k, -1 - i, -1 - b.own[rb], NOWHERE, NOWHERE, key)
     return CUT
 
 
@@ -165,7 +167,8 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
     """Bound a pair of leaves' parts, or cut it."""
     pa, pb = parts_of_row(a, b, front, k)
     counts[LEAF_PAIRS] += 1
-    goal, o = goal_of(best), ROW_REALS * k
+    # what is as near as the nearest is to be gone through, not only bounded
+    goal, o = tied(best) + best[ROUNDING], ROW_REALS * k
     if front.rows[o + ROW_WAY] == UNSEEN:
         if (
             trim_state(a, pa.leaf, pa.box) == OUTSIDE_TRIM
@@ -183,7 +186,7 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
         return KEPT
     if front.rows[o + ROW_WAY] >= 0.0:
         low = close_as_before(front, k, pa, pb, travel, best, counts)
-        if low >= goal:
+        if low > -inf:
             keep_bound(front, k, low - best[ROUNDING], travel)
             return KEPT
     free = -1.0
@@ -275,26 +278,29 @@ def close_row(front, k, pair, travel, best, minima, counts):
 def cut_row(front, k, pair, best):
     """Cut the longer part in two; False: it is too short, or there is no room."""
     pa, pb, q, _ = pair
+    key = bound_key(front, k)
     au, av = widths(pa.side, pa.leaf, pa.box)
     bu, bv = widths(pb.side, pb.leaf, pb.box)
     if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
         return False
     if max(au, av) >= max(bu, bv):
         first, second = split(pa.box, au >= av)
-        if not add_row(front, pa.leaf, pb.leaf, second, pb.box, q, True):
+        if not add_row(front, pa.leaf, pb.leaf, (second, pb.box), key, q, True):
             return False
-        put_row(front, k, pa.leaf, pb.leaf, first, pb.box)
+        put_row(front, k, pa.leaf, pb.leaf, first, pb.box, key)
         return True
     first, second = split(pb.box, bu >= bv)
-    if not add_row(front, pa.leaf, pb.leaf, pa.box, second, q, True):
+    if not add_row(front, pa.leaf, pb.leaf, (pa.box, second), key, q, True):
         return False
-    put_row(front, k, pa.leaf, pb.leaf, pa.box, first)
+    put_row(front, k, pa.leaf, pb.leaf, pa.box, first, key)
     return True
 
 
 @kernel
-def asked_of(best):
-    """The bound that is to be proven of all rows."""
+def asked_of(front, k, best):
+    """The bound that is to be proven of a row; of nodes more, so that no tie is among them."""
+    if front.rows[ROW_REALS * k + ROW_A] < 0.0:
+        return tied(best)
     return goal_of(best) - best[ROUNDING]
 
 
@@ -303,7 +309,7 @@ def settle_row(a, b, front, k, travel, best, minima, counts):
     """Look at a row until it is no longer due, cutting it; whether it is gone. What stays open
     lowers best[OPEN]."""
     told = CUT
-    while told == CUT and best[MET] == 0.0 and is_due(front, k, asked_of(best), travel):
+    while told == CUT and best[MET] == 0.0 and is_due(front, k, asked_of(front, k, best), travel):
         if evaluations(counts) > best[BUDGET]:
             tell_open(front, k, travel, best)
             return False
@@ -312,7 +318,7 @@ def settle_row(a, b, front, k, travel, best, minima, counts):
             told = look_at_nodes(a, b, front, k, travel, best, counts)
         else:
             told = look_at_leaves(a, b, front, k, travel, best, minima, counts)
-        if told == KEPT and is_open(front, k, asked_of(best), travel):
+        if told == KEPT and is_open(front, k, asked_of(front, k, best), travel):
             tell_open(front, k, travel, best)
     return told == GONE_ROW
 

@@ -22,8 +22,9 @@ UNSEEN, NO_WAY = -2.0, -1.0
 # Of each row two numbers: bound and shut, both plus the motion when they were proven.
 KEY_REALS = 2
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
-# the front had when it was made, how many frames there were, whether the last was at one place.
-N_ROWS, GONE, N_MADE, FRAME, WAS_SINGLE = 0, 1, 2, 3, 4
+# the front had when it was made, how many frames there were, and 1 until a front that is being made
+# has no open rows.
+N_ROWS, GONE, N_MADE, FRAME, MAKING = 0, 1, 2, 3, 4
 STORE_REALS = 5
 
 
@@ -58,12 +59,14 @@ class Travel(NamedTuple):
 
 
 @kernel
-def add_row(front, i, j, box_a, box_b, q, known):
-    """Put a row, which is then to be looked at; whether there was room."""
+def add_row(front, i, j, boxes, bound, q, known):
+    """Put a row, which is then to be looked at; whether there was room. bound: its key, of what it
+    is a part of."""
+    box_a, box_b = boxes
     n = int(front.store[N_ROWS])
     if n >= front.most:
         return False
-    put_row(front, n, i, j, box_a, box_b)
+    put_row(front, n, i, j, box_a, box_b, bound)
     o = ROW_REALS * n
     front.rows[o + ROW_DISTANCE] = 0.0 if known else inf
     for k in range(4):
@@ -73,14 +76,14 @@ def add_row(front, i, j, box_a, box_b, q, known):
 
 
 @kernel
-def put_row(front, k, i, j, box_a, box_b):
+def put_row(front, k, i, j, box_a, box_b, bound):
     o, r = ROW_REALS * k, front.rows
     r[o + ROW_A], r[o + ROW_B] = i, j
     b = o + ROW_BOXES
     r[b], r[b + 1], r[b + 2], r[b + 3] = box_a.u0, box_a.u1, box_a.v0, box_a.v1
     r[b + 4], r[b + 5], r[b + 6], r[b + 7] = box_b.u0, box_b.u1, box_b.v0, box_b.v1
     r[o + ROW_FRAME], r[o + ROW_WAY] = -1.0, UNSEEN
-    front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1] = -inf, -inf
+    front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1] = bound, -inf
 
 
 @kernel
@@ -105,6 +108,11 @@ def box_of_row(front, k, which):
 def start_of_row(front, k):
     o, r = ROW_REALS * k + ROW_AT, front.rows
     return (r[o], r[o + 1], r[o + 2], r[o + 3])
+
+
+@kernel
+def bound_key(front, k):
+    return front.keys[KEY_REALS * k]
 
 
 @kernel
@@ -135,8 +143,9 @@ def keep_shut(front, k, free, travel):
 
 @kernel
 def is_passed_over(front, k, most, travel):
-    """May a row that was not looked at in this frame hold points as near as `most`?"""
-    if front.rows[ROW_REALS * k + ROW_FRAME] == front.store[FRAME]:
+    """Was a pair of leaves that may hold points as near as `most` left alone in this frame?"""
+    o = ROW_REALS * k
+    if front.rows[o + ROW_A] < 0.0 or front.rows[o + ROW_FRAME] == front.store[FRAME]:
         return False
     bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
     return bound < most + travel.gone and shut < travel.gone

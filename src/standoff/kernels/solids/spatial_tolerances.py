@@ -54,4 +54,5 @@ direction, the nearest pairs may be a continuum, which is then looked for."""
 HELD_SLOPE: Final = 1e-6
 """Sine: a parameter at the side of a leaf is held there if the distance's slope is more."""
 MOTION_SPARE: Final = 1e-14
-"""Relative, and of the sizes: for the rounding of a motion between two poses."""
+"""Relative, and of the sizes and the distances of the frames: for the rounding of a motion between
+two poses."""

@@ -17,6 +17,7 @@ from standoff.kernels.solids.front_rows import KEY_REALS, N_ROWS, ROW_REALS, STO
 from standoff.solids.answer import MOST_OPEN
 from standoff.solids.spatial.minimum import Found, Sought, found_of, started
 from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.tolerances import PROOF_ROUNDING
 
 Array = NDArray[np.float64]
 MOST_ROWS = 1 << 14
@@ -92,8 +93,11 @@ def front_at(pair: PlacedPair, found: Found, senses: tuple[int, int], sought: So
 class Frames:
     """Frames one after the other from a front on, which stays as it is."""
 
-    def __init__(self, packed: tuple[Any, Any], front: Front, deadline: int) -> None:
+    def __init__(
+        self, packed: tuple[Any, Any], front: Front, tolerance: float, deadline: int
+    ) -> None:
         self.packed = packed
+        self.asked = np.array([tolerance, PROOF_ROUNDING])
         self.work = _room(threading.get_ident())
         store, keys, rows, _, _ = self.work
         self.before, self.best, self.senses = front.before.copy(), front.best.copy(), front.senses
@@ -109,7 +113,7 @@ class Frames:
         done = int(
             solid_frames(
                 self.packed,
-                (self.before, poses),
+                (self.before, poses, self.asked),
                 self.senses,
                 (self.best, minima),
                 (store, keys, rows),

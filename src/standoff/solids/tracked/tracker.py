@@ -15,6 +15,7 @@ from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import MOST_OPEN, SolidProximity
 from standoff.solids.asked import DEADLINE
+from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.distance import (
     Told,
     answer_of,
@@ -112,6 +113,13 @@ class SolidTracker(KeepsReadOnly):
                     name.lower(),
                     body,
                 )
+            if isinstance(body, BarePoint):
+                raise StandoffError(
+                    f"Body {name} is a point: so.distance asks it in each frame, and "
+                    "solid.signed_distance many of them at once.",
+                    name.lower(),
+                    body,
+                )
         self.tolerance = None if tolerance is None else positive(tolerance, "tolerance")
         self.deadline = whole_number(deadline, "deadline")
 
@@ -205,14 +213,23 @@ class SolidTracker(KeepsReadOnly):
         if answer.lower_bound > 0.0:
             sought, senses = self._sought(pair), senses_of(answer.inside)
             front = front_at(pair, pair.least(senses, sought), senses, sought)
-            frames = Frames((self.a.packed, self.b.packed), front, self.deadline)
+            frames = self.frames(front)
             frames.go(pair.relative[None], room_for(1))
             front = frames.kept()
         return answer, (self.a, self.b), front
 
+    @property
+    def proof(self) -> float:
+        """To what the distance is proven where roundings are smaller, length."""
+        default = PROOF_TOLERANCE * (self.a.size + self.b.size)
+        return default if self.tolerance is None else self.tolerance
+
+    def frames(self, front: Front) -> Frames:
+        """Frames from a front on, with what this tracker asks."""
+        return Frames((self.a.packed, self.b.packed), front, self.proof, self.deadline)
+
     def _sought(self, pair: PlacedPair) -> Sought:
-        proof = PROOF_TOLERANCE * pair.size if self.tolerance is None else self.tolerance
-        return Sought(pair.provable(proof), self.deadline, listed=MOST_OPEN)
+        return Sought(pair.provable(self.proof), self.deadline, listed=MOST_OPEN)
 
     def _check(self, state: SolidState) -> None:
         if not isinstance(state, SolidState):
@@ -255,8 +272,7 @@ class _Run:
 
     def _gone(self, front: Front, at: int) -> tuple[Front | None, int]:
         """Frames from a front on, as far as they are answered by it; the front after them."""
-        tracker = self.tracker
-        frames = Frames((tracker.a.packed, tracker.b.packed), front, tracker.deadline)
+        frames = self.tracker.frames(front)
         while at < len(self.relative):
             first, at = at, at + frames.go(self.relative[at:], self.told[at:])
             self.inside[first:at] = front.inside
@@ -286,8 +302,6 @@ class _Run:
             return False
         if row[T.ENDED] != T.SINGLE:
             sought, found = self.tracker._sought(pair), frames.found()
-            if row[T.PASSED]:  # all that is as near is to be found
-                found = pair.least(senses_of(inside), sought)
             answer = told_apart(pair, found, senses_of(inside), inside, sought)
             self.special[k] = _counted(answer, row)
         return True
