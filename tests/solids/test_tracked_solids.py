@@ -199,7 +199,7 @@ def test_states_are_values_and_runs_are_steps() -> None:
         assert np.abs(answer.point_a - run.point_a[k]).max() < 1e-14
         assert answer.counts == run[k].counts
     assert state.proximity.as_dict().keys() == first.proximity.as_dict().keys()
-    for one, other, third in zip(first._front, again._front, state._front, strict=True):
+    for one, other, third in zip(first.front, again.front, state.front, strict=True):
         assert (one == other).all()
         assert (one == third).all()
         assert not one.flags.writeable
@@ -245,7 +245,7 @@ def test_a_frame_without_time_is_an_interval_and_the_next_goes_on() -> None:
     assert found.certified
 
 
-def test_a_front_that_has_grown_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_afront_that_has_grown_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     a, b = PAIRS["bolt, tube"]
     rng = np.random.default_rng(7)
     poses = [placed(np.eye(3), [0.0, 0.0, 3.0 * a.size])]
@@ -265,7 +265,7 @@ def test_a_front_that_has_grown_is_made_anew(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_what_is_no_pair_of_solids() -> None:
     a, b = PAIRS["bolt, tube"]
-    with pytest.raises(so.StandoffError, match="Body B, a half-space, is not bounded"):
+    with pytest.raises(so.StandoffError, match="Body B is a half-space, which is not bounded"):
         so.Tracker(a, so.shapes.halfspace())
     with pytest.raises(so.StandoffError, match="Body A is a point: so"):
         so.Tracker(so.shapes.point(), b)

@@ -23,7 +23,7 @@ from standoff.world.model import Model
 from standoff.world.moment import Moment
 from standoff.world.narrow_phase import Asked, Refused, ask
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
-from standoff.world.state import NO_SOLIDS, SolidAnswers, Tree, WorldCounts, WorldState
+from standoff.world.state import NO_SOLIDS, KeptSolids, Tree, WorldCounts, WorldState
 
 Array = NDArray[np.float64]
 Twists = tuple[Array, bool]
@@ -117,7 +117,7 @@ def _asked(
     world: Model,
     given: GivenPoses,
     found: tuple[Placed, Table],
-    kept: tuple[tuple[Array, ...], SolidAnswers],
+    kept: tuple[tuple[Array, ...], KeptSolids],
     moment: Moment,
 ) -> Asked:
     """`ask`, with the names of the bodies in an error."""

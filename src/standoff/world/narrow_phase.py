@@ -15,7 +15,7 @@ from standoff.tracking.threads import in_parts
 from standoff.world.broad_phase import Placed, Table
 from standoff.world.moment import Moment
 from standoff.world.packed import PackedLaws, PackedPieces
-from standoff.world.state import IN_PAGE, NO_SOLIDS, PAGE, SolidAnswers
+from standoff.world.state import IN_PAGE, NO_SOLIDS, PAGE, KeptSolids
 
 if TYPE_CHECKING:
     from standoff.world.solid_rows import SolidRows
@@ -38,12 +38,12 @@ class Asked(NamedTuple):
         FAR, RESTING, MOVED or NEW, of each pair in the table.
     pages : tuple of arrays
         All blocks that the table's rows stand in.
-    solids : SolidAnswers
+    solids : KeptSolids
     """
 
     fates: Ints
     pages: tuple[Array, ...]
-    solids: SolidAnswers
+    solids: KeptSolids
 
 
 def ask(

@@ -1,4 +1,5 @@
-"""The pairs with a solid in a frame: each is asked cold, and what was found is kept while it rests.
+"""The pairs with a solid in a frame: tracked where they were near before, else asked from nothing;
+what was found is kept while they rest.
 
 Bounds that were known go on holding by the ways of the pieces only while they are positive: how
 deep solids are in each other is not known to change by no more than they move. So a pair whose
@@ -23,6 +24,8 @@ from standoff.solids.of_pieces import OfPieces, answer_of_pieces
 from standoff.solids.query import distance
 from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
+from standoff.solids.tracked.front import Front
+from standoff.solids.tracked.tracker import SolidState, SolidTracker, is_tracked
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 from standoff.world.broad_phase import Placed, Table
@@ -31,7 +34,7 @@ from standoff.world.moment import Moment
 from standoff.world.pair_answer import gradient_of_bodies
 from standoff.world.pieces import PieceUnion
 from standoff.world.shapes import slack_of
-from standoff.world.state import PAGE, SolidAnswers
+from standoff.world.state import PAGE, KeptSolids
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,7 +54,7 @@ class SolidRows:
         poses: Array,
         frame: Placed,
         table: Table,
-        before: SolidAnswers,
+        before: KeptSolids,
         moment: Moment,
     ) -> None:
         self.world, self.poses, self.frame, self.table = world, poses, frame, table
@@ -60,6 +63,7 @@ class SolidRows:
         has = world.solids.bodies
         self.rows = has[self._owners[ints[:, W.I_A]]] | has[self._owners[ints[:, W.I_B]]]
         self._found: dict[int, SolidProximity] = {}
+        self._fronts: dict[int, Front] = {}
         self._asked: set[int] = set()
 
     def settle(self, fates: Ints) -> None:
@@ -72,6 +76,8 @@ class SolidRows:
             if old is not None and still[p] and still[q]:
                 fates[k] = W.RESTING
                 self._found[key] = old
+                if key in self.before.fronts:
+                    self._fronts[key] = self.before.fronts[key]
                 self._note(k, old)
             elif fates[k] != W.FAR or known[k, W.C_BOUND] <= 0.0:
                 fates[k] = W.NEW
@@ -100,20 +106,38 @@ class SolidRows:
         return asking[~solid]
 
     def _answer(self, k: int) -> SolidProximity:
-        """A cold query; roundoff of placements is in its bounds."""
-        p, q = self.table.ints[k, [W.I_A, W.I_B]].tolist()
+        """Asked from nothing, or tracked where it was near before; roundoff of placements is in
+        its bounds."""
+        key, p, q = self.table.ints[k, [W.I_KEY, W.I_A, W.I_B]].tolist()
         a, b = self._solids(p, q)
         doubt = self._composed(p) + self._composed(q)
         horizon = float(self.table.known[k, W.C_HORIZON])
         # more than the horizon, so that the bound of what is far is beyond it
         more = doubt + slack_of(a) + slack_of(b) + PROOF_TOLERANCE * size_together(a, b)
         within = None if horizon == math.inf else horizon + more
-        found = distance(a, b, self._pose(p), self._pose(q), within=within)
+        if key in self.before.pieces and is_tracked(a, b):
+            found = self._tracked(key, (a, b), (self._pose(p), self._pose(q)))
+        else:
+            found = distance(a, b, self._pose(p), self._pose(q), within=within)
         return replace(
             found,
             lower_bound=found.lower_bound - doubt,
             upper_bound=found.upper_bound + doubt,
         )
+
+    def _tracked(
+        self, key: int, solids: tuple[Any, Any], poses: tuple[Pose, Pose]
+    ) -> SolidProximity:
+        """From the bounds of the frame before; the first time from nothing."""
+        tracker, old = SolidTracker(*solids), self.before.fronts.get(key)
+        if old is None:
+            state = tracker.start(*poses)
+        else:
+            before = SolidState(self.before.pieces[key], (tracker.a, tracker.b), old)
+            state, _ = tracker.step(before, *poses)
+        if state.front is not None:
+            self._fronts[key] = state.front
+        return state.proximity
 
     def _solids(self, p: int, q: int) -> tuple[Any, Any]:
         return self.world.solids.asked[p], self.world.solids.asked[q]
@@ -137,7 +161,7 @@ class SolidRows:
 
     def answers(
         self, fates: Ints, pages: tuple[Array, ...]
-    ) -> tuple[SolidAnswers, tuple[Array, ...]]:
+    ) -> tuple[KeptSolids, tuple[Array, ...]]:
         """What was found of all pairs of bodies, with a page of their numbers."""
         ints, known = self.table.ints, self.table.known
         fates[self.rows & (known[:, W.C_BOUND] > known[:, W.C_HORIZON])] = W.FAR
@@ -157,7 +181,8 @@ class SolidRows:
             whole[group] = found
         kept = {int(ints[k, W.I_KEY]): self._found[int(ints[k, W.I_KEY])] for k in near.tolist()}
         made = (np.array(blocks),) if blocks else ()
-        return SolidAnswers(kept, whole), (*pages, *made)
+        fronts = {key: self._fronts[key] for key in kept if key in self._fronts}
+        return KeptSolids(kept, whole, fronts), (*pages, *made)
 
     def _bodies(self, k: int) -> tuple[int, int]:
         i, j = self._owners[self.table.ints[k, [W.I_A, W.I_B]]].tolist()

@@ -16,6 +16,7 @@ from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
     from standoff.solids.answer import SolidProximity
+from standoff.solids.tracked.front import Front
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -72,7 +73,7 @@ class WorldCounts(NamedTuple):
     uncertified: int
 
 
-class SolidAnswers(NamedTuple):
+class KeptSolids(NamedTuple):
     """Of the near pairs with a solid.
 
     Attributes
@@ -81,13 +82,16 @@ class SolidAnswers(NamedTuple):
         Of pairs of pieces, by their keys in the table.
     bodies : mapping of int to SolidProximity
         Of pairs of bodies, by their numbers.
+    fronts : mapping of int to Front
+        Of pairs of pieces that were near in two frames: what their trackers go on from.
     """
 
     pieces: Mapping[int, SolidProximity]
     bodies: Mapping[int, SolidProximity]
+    fronts: Mapping[int, Front]
 
 
-NO_SOLIDS = SolidAnswers({}, {})
+NO_SOLIDS = KeptSolids({}, {}, {})
 
 
 class WorldState(KeepsReadOnly):
@@ -146,7 +150,7 @@ class WorldState(KeepsReadOnly):
     pages: tuple[Array, ...]
     counts: WorldCounts
     repaired: int
-    solids: SolidAnswers
+    solids: KeptSolids
 
     @property
     def nbytes(self) -> int:

@@ -13,6 +13,7 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries import tracked_solids as T
 from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
+from standoff.shown_names import hides
 from standoff.solids.answer import MOST_OPEN, SolidProximity
 from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.bare_point import BarePoint
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+@hides("front")
 class SolidState(KeepsReadOnly):
     """What a tracker of solids carries from frame to frame, as a value: it is never changed.
 
@@ -52,16 +54,16 @@ class SolidState(KeepsReadOnly):
         Pairs of pieces whose bounds are kept; 0 after a frame in which the solids meet.
     """
 
-    __slots__ = ("_front", "_pair", "proximity")
+    __slots__ = ("_pair", "front", "proximity")
 
     def __init__(
         self, proximity: SolidProximity, pair: tuple[SolidModel, SolidModel], front: Front | None
     ) -> None:
-        self.proximity, self._pair, self._front = proximity, pair, front
+        self.proximity, self._pair, self.front = proximity, pair, front
 
     @property
     def rows(self) -> int:
-        return int(self._front.store[0]) if self._front else 0
+        return int(self.front.store[0]) if self.front else 0
 
     def __repr__(self) -> str:
         return f"<SolidState of {self.rows} rows: {self.proximity!r}>"
@@ -106,20 +108,9 @@ class SolidTracker(KeepsReadOnly):
         self.dt = positive(dt, "dt")
         self.a, self.b = as_model(a), as_model(b)
         for name, body in (("A", self.a), ("B", self.b)):
-            if not body.bounded:
-                raise StandoffError(
-                    f"Body {name}, a half-space, is not bounded: a tracker keeps bounds of pieces "
-                    "of both; ask so.distance in each frame.",
-                    name.lower(),
-                    body,
-                )
-            if isinstance(body, BarePoint):
-                raise StandoffError(
-                    f"Body {name} is a point: so.distance asks it in each frame, and "
-                    "solid.signed_distance many of them at once.",
-                    name.lower(),
-                    body,
-                )
+            why = untracked(body)
+            if why:
+                raise StandoffError(f"Body {name} {why}", name.lower(), body)
         self.tolerance = None if tolerance is None else positive(tolerance, "tolerance")
         self.deadline = whole_number(deadline, "deadline")
 
@@ -246,6 +237,26 @@ class SolidTracker(KeepsReadOnly):
                 )
 
 
+def untracked(body: SolidModel) -> str:
+    """Why a tracker does not keep a body's distance, and what to do; "" where it does."""
+    if not body.bounded:
+        return (
+            "is a half-space, which is not bounded: a tracker keeps bounds of pieces of both; ask "
+            "so.distance in each frame."
+        )
+    if isinstance(body, BarePoint):
+        return (
+            "is a point: so.distance asks it in each frame, and solid.signed_distance many of them "
+            "at once."
+        )
+    return ""
+
+
+def is_tracked(a: Any, b: Any) -> bool:
+    """Are two models of solids in space such that a tracker keeps their distance?"""
+    return all(isinstance(each, SolidModel) and not untracked(each) for each in (a, b))
+
+
 class _Run:
     """One call of `SolidTracker.run`."""
 
@@ -258,7 +269,7 @@ class _Run:
         self.special: dict[int, SolidProximity] = {}
 
     def answers(self) -> tuple[SolidState, SolidAnswers]:
-        front, at, n = self.state._front, 0, len(self.relative)
+        front, at, n = self.state.front, 0, len(self.relative)
         while at < n:
             if front is None:
                 front, at = self._ask(at), at + 1
