@@ -20,7 +20,7 @@ Ints = NDArray[np.int64]
 CUBIC, ARC = 0.0, 1.0
 RUN = 24
 """Samples of a run."""
-STEPS = 40
+STEPS = 160
 """Of a descent; some ten are usual."""
 FIRST_DAMPING = 1e-3
 """Relative."""
