@@ -26,6 +26,7 @@ MODULES = (
     "standoff.kernels.entries.world_answers",
     "standoff.kernels.entries.planar_solids",
     "standoff.kernels.entries.solids",
+    "standoff.kernels.entries.tracked_solids",
 )
 """The modules that have entries."""
 
@@ -70,6 +71,13 @@ def prepare_servo() -> None:
     from standoff.kernels.entries import servo, simulation
 
     _prepare_each([simulation.run_system, servo.serve, servo.put_row, servo.take_row])
+
+
+def prepare_tracked_solids() -> None:
+    """Prepare what calls frames of two solids, and queries from nothing."""
+    from standoff.kernels.entries import solids, tracked_solids
+
+    _prepare_each([tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point])
 
 
 def _prepare_each(needed: Sequence[Any]) -> None:

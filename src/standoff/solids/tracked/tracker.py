@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from standoff.checks.numbers import positive, whole_number
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries import tracked_solids as T
+from standoff.kernels.entries.preparing import prepare_tracked_solids
 from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
@@ -113,6 +114,7 @@ class SolidTracker(KeepsReadOnly):
                 raise StandoffError(f"Body {name} {why}", name.lower(), body)
         self.tolerance = None if tolerance is None else positive(tolerance, "tolerance")
         self.deadline = whole_number(deadline, "deadline")
+        prepare_tracked_solids()
 
     def start(self, pose_a: PoseLike, pose_b: PoseLike) -> SolidState:
         """Find the witness points globally, and prove it.
