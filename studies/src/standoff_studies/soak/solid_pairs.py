@@ -11,6 +11,7 @@ poses that repeat it, and the exit code is then 1.
 
 from __future__ import annotations
 
+import argparse
 from functools import cache, partial
 from typing import Any
 
@@ -65,7 +66,11 @@ def main() -> int:
     parser = blocks.options(__doc__, "poses", 100_000, BLOCK)
     parser.add_argument("--parts", nargs="+", default=list(MAKERS), choices=list(MAKERS))
     given = parser.parse_args()
-    work = partial(judge_block, seed=given.seed, pairs=pairs_of(given.parts))
+    return run_and_tell(given, partial(judge_block, seed=given.seed, pairs=pairs_of(given.parts)))
+
+
+def run_and_tell(given: argparse.Namespace, work: blocks.Work) -> int:
+    """Run all blocks, and tell the statuses by gap; 1 if anything was wrong."""
     verdict = blocks.run(given, BLOCK, work)
     if verdict is None:
         return 0

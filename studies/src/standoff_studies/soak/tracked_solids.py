@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from standoff.cli.terminal import tell
 from standoff.motion import Pose, Poses
 from standoff.solids import SolidProximity, SolidState, SolidTracker
 from standoff.solids.spatial.distance import spatial_distance
@@ -21,7 +20,7 @@ from standoff.tracking.status import Status
 from standoff_studies.soak import blocks
 from standoff_studies.soak.solid_judge import Verdict
 from standoff_studies.soak.solid_outlines import Array
-from standoff_studies.soak.solid_pairs import BLOCK, judge_block, table
+from standoff_studies.soak.solid_pairs import BLOCK, judge_block, run_and_tell
 from standoff_studies.soak.solid_parts import MAKERS
 from standoff_studies.soak.solid_poses import pairs_of
 
@@ -91,11 +90,7 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=10, help="of each pose")
     given = parser.parse_args()
     work = partial(judged_frames, seed=given.seed, pairs=pairs_of(given.parts), frames=given.frames)
-    verdict = blocks.run(given, BLOCK, work)
-    if verdict is None:
-        return 0
-    tell(table(verdict))
-    return 0 if verdict.sound else 1
+    return run_and_tell(given, work)
 
 
 if __name__ == "__main__":
