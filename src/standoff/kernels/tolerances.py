@@ -78,6 +78,9 @@ RAYS = 6
 # third or quarter, where patches have their corners and symmetric faces their symmetry.
 AIM_FIRST = 0.2371
 AIM_STEP = 0.1113
+# A ray with a smaller sine to the curve that it is aimed at is not cast: its crossings would be
+# ends of curves.
+ALONG_AIM = 1e-9
 
 # An atlas's chart is left when |u| or |v| passes RECHART (dimensionless, gnomonic).
 RECHART = 1.2

@@ -17,6 +17,7 @@ from standoff.kernels.compiler.decorators import shared, uncontracted
 from standoff.kernels.tolerances import (
     AIM_FIRST,
     AIM_STEP,
+    ALONG_AIM,
     FAR_OUT,
     PARAMETER_NOISE,
     PCURVE_OVERLAP,
@@ -257,14 +258,18 @@ def on_face(ints, reals, chart, u, v):
         aim = coedge_record(ints, first + k % n)
         o = ints[aim + L.COEDGE_REALS]
         t = reals[o] + (AIM_FIRST + AIM_STEP * k) * (reals[o + 1] - reals[o])
-        x, y, _, _, depth = coedge_parameters(ints, reals, first + k % n, t)
+        x, y, tx, ty, depth = coedge_parameters(ints, reals, first + k % n, t)
         if depth <= 0.0:
             continue
-        if hypot(x - u, y - v) <= noise:
+        away = hypot(x - u, y - v)
+        if away <= noise:
             return True
-        side = ray_side(ints, reals, r, u, v, x - u, y - v)
+        across, up = v - y, x - u
+        # along its aim a ray may pass through the ends of what it is aimed at
+        if abs(tx * across + ty * up) <= ALONG_AIM * hypot(tx, ty) * away:
+            continue
+        side = ray_side(ints, reals, r, u, v, up, -across)
         if side != 0:
             return side > 0
-        across, up = v - y, x - u
     # along a face without width none does: is the point on its line, between the ends?
     return (across == 0.0 and up == 0.0) or ray_side(ints, reals, r, u, v, across, up) > 0
