@@ -12,11 +12,15 @@ from hypothesis import strategies as st
 
 from draws import draws
 from families import crossing_solids as made
+from families.solid_shapes import egg
 from standoff.bodies import Boundary
 from standoff.errors import StandoffError
 from standoff.geometry import Plane
+from standoff.kernels.solids import spatial_self as K
 from standoff.solids import SelfIntersections, Solid
-from standoff.solids.spatial.own_pairs import one_to_one
+from standoff.solids.spatial import self_intersections as si
+from standoff.solids.spatial.minimum import leaf_jet_of
+from standoff.solids.spatial.own_pairs import OwnPairs, one_to_one
 from standoff_studies.soak.solid_parts import MAKERS, bolt, elbow
 
 
@@ -192,3 +196,21 @@ def test_the_error_names_both_faces_the_place_and_the_fix() -> None:
     assert "near (1, " in message
     assert "by about 0.2" in message or "by about 0.19" in message
     assert "Move or trim one of the faces" in message
+
+
+def test_neighbours_on_a_face_do_not_meet() -> None:
+    """Points of one face that are near, with a short way along it between them or a long one."""
+    solid = egg(1.0, 0.7, 0.5)
+    leaf = next(k for k, one in enumerate(solid.leaves) if one.dim == 2)
+    u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
+    u, v = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
+    near, far = 1e-4 * (u1 - u0), 0.4 * (u1 - u0)
+    group = OwnPairs((0, 0), np.array([[leaf, leaf]] * 3), np.zeros((0, 4)))
+    rows = np.array(
+        [[K.MET, 0.0, u, v, u + near, v], [K.MET, 0.0, u, v, u + far, v], [K.APART, 0, u, v, u, v]]
+    )
+    step = np.linalg.norm(
+        leaf_jet_of(solid.packed, leaf, u + near, v)[0] - leaf_jet_of(solid.packed, leaf, u, v)[0]
+    )
+    told = si._neighbours(solid, group, rows, 2.0 * step)
+    assert told.tolist() == [True, False, False]

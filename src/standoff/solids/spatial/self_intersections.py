@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.bodies.tessellation import surface_of
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import meet_own_leaves
 from standoff.kernels.solids import spatial_self as K
@@ -20,12 +22,14 @@ from standoff.solids.spatial.own_pairs import OwnPairs, own_pairs
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.ties import starts
-from standoff.solids.spatial.tolerances import MEETING, MEETING_SLACKS, PROVEN_SHARE
+from standoff.solids.spatial.tolerances import MEETING, MEETING_SLACKS, PROVEN_SHARE, SHORT_WAY
 
 # Evaluations for one pair of leaves, at most.
 BUDGET = 20_000
 # Numbers that the pairs of boxes of one pair of leaves need.
 WORK = 2048
+# Steps of the way from one point of a face to another.
+ON_THE_WAY = 16
 Key = tuple[int, int]
 
 
@@ -144,6 +148,8 @@ def self_intersections(solid: SolidModel) -> SelfIntersections:
     undecided = met = 0
     for group in _shared_out(groups):
         rows = _looked_at(solid, group, tolerance)
+        neighbours = _neighbours(solid, group, rows, SHORT_WAY * tolerance)
+        rows[neighbours, 0] = K.OPEN
         beside += int((rows[:, 0] == K.BESIDE).sum())
         undecided += int((rows[:, 0] == K.OPEN).sum())
         met += int((rows[:, 0] == K.MET).sum())
@@ -180,6 +186,26 @@ def _looked_at(solid: SolidModel, group: OwnPairs, tolerance: float) -> Array:
         found.ravel(),
         counts,
     )
+    return found
+
+
+def _neighbours(solid: SolidModel, group: OwnPairs, rows: Array, most: float) -> NDArray[np.bool_]:
+    """Of which pairs both points are on one face, with a way along it from one to the other that is
+    not longer than a length: they are near because they are neighbours."""
+    found = np.zeros(len(rows), dtype=bool)
+    for k in np.flatnonzero(rows[:, 0] == K.MET):
+        first, other = (solid.leaves[int(leaf)] for leaf in group.leaves[k])
+        if first.chart != other.chart:
+            continue
+        surface = surface_of(
+            solid.boundary, solid.boundary.face_parts[first.feature].charts, first.chart
+        )
+        p, q = rows[k, 2:4], rows[k, 4:6].copy()
+        if surface.periodic:
+            q[0] -= 2.0 * np.pi * np.round((q[0] - p[0]) / (2.0 * np.pi))
+        places = p + np.linspace(0.0, 1.0, ON_THE_WAY + 1)[:, None] * (q - p)
+        points = np.array([surface.jet(float(u), float(v))[0] for u, v in places])
+        found[k] = np.linalg.norm(np.diff(points, axis=0), axis=1).sum() <= most
     return found
 
 

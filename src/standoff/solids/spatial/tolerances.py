@@ -98,3 +98,14 @@ VERTEX_SHARE: Final = 1e-3
 """Of the shortest edge at a vertex: nearer to it, faces that it joins are not looked at."""
 LEAST_ANGLE: Final = 1e-6
 """Sine of the angle of two faces below which they touch rather than cross."""
+SHORT_WAY: Final = 4.0
+"""Of the length below which faces meet: points of one face with a shorter way along it between them
+are near to each other as neighbours."""
+ALONG_SCREW: Final = 1e-3
+"""Relative: where the normals of a face are across the velocities of a screw motion to this, it
+moves the face along itself. It only decides whether a potential is tried."""
+MANY_SCREWS: Final = 1e-2
+"""Relative: where a second motion is as near as this, there is no telling which is meant."""
+LEAST_TURN: Final = 1e-2
+"""Of a motion whose turn and velocity, over the face's size, have the length 1: below this it is a
+translation."""
