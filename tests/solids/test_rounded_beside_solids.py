@@ -272,7 +272,8 @@ def test_a_ball_and_a_capsule_in_a_hole() -> None:
     assert found.distance == pytest.approx(0.15, abs=1e-12)
     ends = np.array([pair[1] for pair in found.continuum.ends])
     assert np.ptp(ends[:, 2]) == pytest.approx(1.0, abs=0.05)
-    assert found.feature_b == Feature("edge", 0)
+    # the line ends at both vertices, so that the first pair may be one's
+    assert Feature("edge", 0) in {pair.feature_b for pair in found.minima}
 
 
 def test_a_ball_on_a_bracket_touches_it() -> None:

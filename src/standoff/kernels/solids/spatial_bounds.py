@@ -41,6 +41,7 @@ from standoff.kernels.solids.torus_potential import (
     TORUS_THROUGH,
     form,
     potential_jet,
+    serves,
 )
 
 # Boxes of one piece and one potential that wait at a time.
@@ -180,6 +181,35 @@ def greatest(phi, sign, side, leaf, box, u, v):
 
 
 @kernel
+def greatest_along(phi, sign, side, piece, ta, tb):
+    """(bound of sign phi over a part of a trimming curve, value in its middle); where the potential
+    does not serve, no bound and no value."""
+    own, m = side.own, side.numbers
+    o = own[S.R_PIECES] + S.PIECE_REALS * piece
+    h, t = 0.5 * (tb - ta), 0.5 * (ta + tb)
+    feature = own[own[S.PIECES] + S.PIECE_INTS * piece + 1]
+    jet = moved_jet(side.pose, feature_jet(side.ints, side.reals, feature, -1, t, 0.0))
+    l1, l2 = m[o + S.P_FIRST], m[o + S.P_FIRST + 1]
+    l3, spread = m[o + S.P_FIRST + 2], m[o + S.P_FIRST + 3]
+    if not serves(phi, jet[0], l1 * h):
+        return inf, -inf
+    value, g, H, d2, d3 = pulled_back(phi, sign, jet, l1 * h)
+    bound = value + l1 * h
+    if d2 < inf:
+        third = d3 * l1 * l1 * l1 + 3.0 * d2 * l1 * l2 + l3
+        arc = arc_offset(side, feature)
+        if arc >= 0 and is_plane(phi):
+            third = swing(side, arc, phi.n)
+        bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
+        if arc >= 0 and phi.kind == AXIS_OF:
+            data = arc_data(side, arc)
+            if data[0]:
+                part = S.Box(ta, tb, 0.0, 0.0)
+                bound = min(bound, round_axis_greatest(phi, sign, data, part, t, 0.0))
+    return bound, value
+
+
+@kernel
 def along_trim(phi, sign, most, side, leaf, box):
     """Is sign phi proven to be at most `most` on all trimming curves in a box?"""
     r = leaf_ints(side, leaf)
@@ -198,24 +228,8 @@ def along_trim(phi, sign, most, side, leaf, box):
             if not meets(part_box(side, piece, ta, tb), box):
                 continue
             rounds += 1
-            h, t = 0.5 * (tb - ta), 0.5 * (ta + tb)
-            feature = own[own[S.PIECES] + S.PIECE_INTS * piece + 1]
-            jet = moved_jet(side.pose, feature_jet(side.ints, side.reals, feature, -1, t, 0.0))
-            l1, l2 = m[o + S.P_FIRST], m[o + S.P_FIRST + 1]
-            l3, spread = m[o + S.P_FIRST + 2], m[o + S.P_FIRST + 3]
-            value, g, H, d2, d3 = pulled_back(phi, sign, jet, l1 * h)
-            bound = value + l1 * h
-            if d2 < inf:
-                third = d3 * l1 * l1 * l1 + 3.0 * d2 * l1 * l2 + l3
-                arc = arc_offset(side, feature)
-                if arc >= 0 and is_plane(phi):
-                    third = swing(side, arc, phi.n)
-                bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
-                if arc >= 0 and phi.kind == AXIS_OF:
-                    data = arc_data(side, arc)
-                    if data[0]:
-                        part = S.Box(ta, tb, 0.0, 0.0)
-                        bound = min(bound, round_axis_greatest(phi, sign, data, part, t, 0.0))
+            t = 0.5 * (ta + tb)
+            bound, value = greatest_along(phi, sign, side, piece, ta, tb)
             if bound <= most:
                 continue
             if rounds > MOST_PARTS or count >= PARTS_WAITING:
@@ -236,10 +250,16 @@ def along_trim(phi, sign, most, side, leaf, box):
 def held_by_trim(phi, sign, most, side, leaf, box, g, change):
     """Is sign phi at most `most` on the part of a face in a box, because it grows along a parameter
     up to the trimming curves, where it is not more, or to a side of the box, where it is not more
-    or where no face is?"""
+    or where no face is? Where it grows along both, up to the curves or to a corner of the box."""
     along_u, along_v = abs(g[0]) > change[0], abs(g[1]) > change[1]
     if not (along_u or along_v) or not along_trim(phi, sign, most, side, leaf, box):
         return False
+    if along_u and along_v:
+        u = box.u1 if g[0] > 0.0 else box.u0
+        v = box.v1 if g[1] > 0.0 else box.v0
+        if trim_state(side, leaf, S.Box(u, u, v, v)) == OUTSIDE_TRIM:
+            return True
+        return sign * potential_jet(phi, leaf_jet(side, leaf, u, v)[0], 0.0)[0] <= most
     for k in range(2):
         if not (along_u if k == 0 else along_v):
             continue

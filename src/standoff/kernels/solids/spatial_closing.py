@@ -6,6 +6,7 @@ from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.coaxial import coaxial_between, common_axis
+from standoff.kernels.solids.screw import common_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
     across,
@@ -18,6 +19,7 @@ from standoff.kernels.solids.spatial_minimum import (
 from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
     leaf_box,
+    leaf_ints,
     leaf_jet,
     leaf_reals,
     natural,
@@ -59,11 +61,16 @@ PAIR_REALS = 9
 MOST_PAIRS = 200
 # Boxes that a potential is bounded over, of one piece: few at first, for another may do.
 FEW_BOXES, MOST_BOXES = 20, 400
+# Cuts of a pair of leaves after which it counts as hard.
+EASY_CUTS = 16
+# The same, of a potential that does for whole pieces of a thread.
+SCREW_BOXES = 150
 # The same, where one potential did before.
 AGAIN_BOXES = 8
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
-ALL_WAYS = (0, 6)
-OWN_A, OWN_B, HERE, THERE = 0, 1, 2, 9
+SCREWED = 7
+ALL_WAYS = (0, SCREWED)
+OWN_A, OWN_B, HERE, THERE = 0, 1, 2, 10
 # Of how much farther parts are apart than is asked: what of it is tried to be proven too.
 SHARE_AHEAD = 0.8
 # Shares of 1 / span: the least difference of curvature to both sides that is sought.
@@ -91,8 +98,8 @@ def by_own_surface(goal, a, b, q, limit, counts):
 @shared
 def by_witness(goal, a, b, at, ways, limit, best, counts):
     """Which potential through a pair of points (leaves and parameters `at`) proves it: a plane (0),
-    or one of three margins about a common axis (1, 3, 5) or a torus (2, 4, 6); -1: none. Of `ways`
-    the first and the last are tried."""
+    one of three margins about a common axis (1, 3, 5) or a torus (2, 4, 6), or along a screw (7,
+    which is tried first); -1: none. Of `ways` all from the first to the last are tried."""
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
     size = best[SIZE]
@@ -103,6 +110,12 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
     first, last = ways
+    if last == SCREWED:
+        screw = common_screw(a, b)
+        if screw[0]:
+            known, phi = screw_between(a, b, x, y, n, screw)
+            if known and by_one(phi, goal, a, b, (here, q, x, y, SCREW_BOXES), counts):
+                return SCREWED
     if first == 0 and by_one(plane_between(x, y, n), goal, a, b, place, counts):
         return 0
     if last == 0:
@@ -116,7 +129,7 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
     turned, point, axis = common_axis(a, b, n, size)
-    for way in range(max(first, 1), last + 1):
+    for way in range(max(first, 1), min(last, SCREWED - 1) + 1):
         margin = MARGINS[(way - 1) // 2] / span
         if way % 2 == 0:
             phi = torus_between(x, y, n, frame, sa, sb, margin)
@@ -240,8 +253,9 @@ def nearest_of(a, b, counts):
 
 
 @kernel
-def closed_by_any(a, b, best, minima, counts):
-    """Is a pair of parts closed? Nearer points that are found are kept."""
+def closed_by_any(a, b, best, minima, hard, counts):
+    """Is a pair of parts closed? Nearer points that are found are kept. Of a `hard` pair of leaves
+    more boxes of a potential are looked at."""
     q, distance = nearest_of(a, b, counts)
     keep_found(a, b, q, distance, best, minima)
     if best[MET] > 0.0:
@@ -253,7 +267,7 @@ def closed_by_any(a, b, best, minima, counts):
     closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts) >= 0
     # a nearer place off a trim is cut away sooner than bounded
     if not closed and distance >= goal:
-        closed = closed_to(goal, row, pair, MOST_BOXES, best, minima, counts) >= 0
+        closed = hard and closed_to(goal, row, pair, MOST_BOXES, best, minima, counts) >= 0
     elif not closed:
         closed = closed_off_trim(goal, 0.0, a, b, best, counts) >= goal
     if closed:
@@ -348,12 +362,19 @@ def put_halves(a, b, best, work, count, low):
 
 
 @kernel
+def dim_of(side, leaf):
+    return side.own[leaf_ints(side, leaf) + S.DIM]
+
+
+@kernel
 def close_leaves(a, b, pair, best, minima, work, counts):
     """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
     lowers best[OPEN]."""
     leaf_a, leaf_b, low = pair
     put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
-    count = 1
+    count, cuts = 1, 0
+    # two edges have few boxes
+    most_easy = EASY_CUTS if dim_of(a, leaf_a) + dim_of(b, leaf_b) > 2 else 0
     while count > 0 and best[MET] == 0.0:
         count -= 1
         o = PAIR_REALS * count
@@ -372,7 +393,8 @@ def close_leaves(a, b, pair, best, minima, work, counts):
             or trim_state(b, leaf_b, pb.box) == OUTSIDE_TRIM
         ):
             continue
-        if closed_by_any(pa, pb, best, minima, counts):
+        if closed_by_any(pa, pb, best, minima, cuts >= most_easy, counts):
             continue
         counts[BISECTIONS] += 1
+        cuts += 1
         count = put_halves(pa, pb, best, work, count, low)

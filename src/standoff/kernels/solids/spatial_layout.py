@@ -17,8 +17,8 @@ REAL_HEADER = 3
 LEAF_INTS = 8
 DIM, FEATURE, CHART, CUT, SENSES, LIST, N_LIST, NATURAL = range(8)
 # NATURAL: a kind of potential; none; or what has an axis all the same: an arc of a circle, and a
-# face or an edge that is made by turning.
-NO_KIND, ROUND_ARC, TURNED = -1, -2, -3
+# face or an edge that is made by turning, or a face along which a screw motion moves nearly itself.
+NO_KIND, ROUND_ARC, TURNED, SCREWED = -1, -2, -3, -4
 # SENSES: where a minimum may lie, seen from outside the material, from inside, or both.
 OUTSIDE, INSIDE, EITHER = 1, 2, 3
 

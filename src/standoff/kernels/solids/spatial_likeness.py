@@ -20,6 +20,7 @@ from standoff.kernels.solids.torus_potential import (
     CENTRE_OF,
     CIRCLE_OF,
     CONE_OF,
+    SCREW_OF,
     THIRD,
     potential_jet,
 )
@@ -82,6 +83,8 @@ def to_axis(phi, point, axis, x, reach):
     an axis."""
     if phi.kind == CENTRE_OF:
         return off_axis(phi.o, point, axis), 0.0
+    if phi.kind == SCREW_OF:
+        return inf, inf
     sine = norm(cross(phi.n, axis))
     if abs(dot(phi.n, axis)) < 0.5:
         return inf, inf

@@ -56,3 +56,14 @@ HELD_SLOPE: Final = 1e-6
 MOTION_SPARE: Final = 1e-14
 """Relative, and of the sizes and the distances of the frames: for the rounding of a motion between
 two poses."""
+NEAREST_AXIS: Final = 0.3
+"""Of a point's distance from a screw's axis: parts that reach nearer to it are cut before the
+potential of the screw, which is steeper there, is tried."""
+OFF_SCREW: Final = 0.05
+"""Sine: a normal this far from being that of a surface along the screw is not tried with it."""
+ONE_THREAD: Final = 0.03
+"""Relative, of a rise, and of a slope's angle: a part of a thread whose ends have another screw
+than the whole is taken to have it if it is this near."""
+STEEP_FLANK: Final = 0.2
+"""Ratio: a normal with less along a screw's axis than this of what it has across it is a crest's or
+a root's, and no flank's."""

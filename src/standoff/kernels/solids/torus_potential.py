@@ -2,10 +2,11 @@
 
 The torus potential has any two curvatures, plane, cylinder and sphere included; its numbers keep
 their digits for curvatures of either sign and zero. The others are distances from an axis, a
-centre, a cone and a circle: constant on the analytic faces that they belong to.
+centre, a cone and a circle: constant on the analytic faces that they belong to. The last is
+constant along screw lines: on the flanks of a thread.
 """
 
-from math import inf
+from math import atan2, inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.roots import sqrt
@@ -17,6 +18,7 @@ CONE_OF = 1
 CIRCLE_OF = 2
 AXIS_OF = 3
 CENTRE_OF = 4
+SCREW_OF = 5
 # The greatest third derivative of a distance from a point, along any direction, times its square:
 # 3 sin² cos is greatest at 2 / sqrt(3).
 THIRD = 1.1548
@@ -26,7 +28,11 @@ THIRD_ROOT = 1.0 / 3.0
 class Potential(NamedTuple):
     """One potential. TORUS_THROUGH: o on it, e1, e2, n a frame, k1 and k2 its curvatures along e1
     and e2. The others: o and n a point and the axis, k1 and k2 cosine and sine of a cone's half
-    angle, radii of a torus, or the radius alone; `sign` is +1 or -1."""
+    angle, radii of a torus, or the radius alone; `sign` is +1 or -1.
+
+    SCREW_OF: o and n a point and the axis, e1 a direction across it, k1 the rise per radian, k2 a
+    length above 0: where the coordinate along e1 is at least k2 it changes by no more than the way
+    gone. e2 has its slopes along the axis and away from it, and a 0."""
 
     kind: Any
     o: Any
@@ -152,6 +158,33 @@ def centre_jet(phi, y, reach):
 
 
 @kernel
+def screw_jet(phi, y, reach):
+    """s (z - h angle) + t rho, of slopes (s, t) = e2 and the rise h."""
+    z, h = dot(phi.n, y), phi.k1
+    s, t = phi.e2[0], phi.e2[1]
+    radial = axpy(-z, phi.n, y)
+    rho = norm(radial)
+    least = max(rho - reach, phi.k2)  # no point that is asked of is nearer to the axis
+    if rho < phi.k2:
+        return 0.0, phi.n, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), inf, inf
+    out = scale(1.0 / rho, radial)
+    around = cross(phi.n, out)
+    angle = atan2(dot(cross(phi.n, phi.e1), y), dot(phi.e1, y))
+    gradient = axpy(t, out, axpy(s, phi.n, scale(-s * h / rho, around)))
+    H = plus(outer(2.0 * s * h / (rho * rho), out, around), outer(t / rho, around, around))
+    # the angle's k-th derivative is at most (k - 1)! / rho^k
+    second = abs(s * h) / (least * least) + abs(t) / least
+    third = (2.0 * abs(s * h) / least + THIRD * abs(t)) / (least * least)
+    return s * (z - h * angle) + t * rho, gradient, H, max(second, sqrt(third / THIRD)), 0.0
+
+
+@kernel
+def serves(phi, x, reach):
+    """Is a potential 1-Lipschitz in the ball of radius `reach` round x?"""
+    return phi.kind != SCREW_OF or dot(phi.e1, sub(x, phi.o)) - reach >= phi.k2
+
+
+@kernel
 def potential_jet(phi, x, reach):
     """(value, gradient, second derivatives, K1, K2) at x; within `reach` of x the second
     derivative is at most K1 + K2 and the third THIRD (K1² + K2²) + 3 K1 K2; inf: not known."""
@@ -160,6 +193,8 @@ def potential_jet(phi, x, reach):
         return torus_jet(phi, y, reach)
     if phi.kind == CENTRE_OF:
         value, g, H, c1, c2 = centre_jet(phi, y, reach)
+    elif phi.kind == SCREW_OF:
+        value, g, H, c1, c2 = screw_jet(phi, y, reach)
     else:
         value, g, H, c1, c2 = round_axis_jet(phi, y, reach)
     s = phi.sign

@@ -3,20 +3,75 @@ nearer to each other, off the faces themselves."""
 
 from math import inf
 
-from standoff.kernels.body.features import coedge_parameters
+from standoff.kernels.algebra.vectors import dot, sub
+from standoff.kernels.body.features import coedge_parameters, feature_jet, moved_jet
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_minimum import nearest
-from standoff.kernels.solids.spatial_pieces import leaf_ints, meets, part_box
+from standoff.kernels.solids.spatial_pieces import leaf_ints, leaf_jet, meets, part_box
 from standoff.kernels.solids.spatial_progress import middle
 
 # Places that are tried on each piece of a trimming curve, and on all of a leaf.
 ON_A_PIECE, ON_A_LEAF = 4, 16
+# Moves along a curve from the best of these.
+SLIDES = 3
+# Times that an interval of a trimming curve is narrowed to what is in a part.
+NARROWINGS = 6
 
 
 @kernel
 def holds(box, u, v):
     return box.u0 <= u <= box.u1 and box.v0 <= v <= box.v1
+
+
+@kernel
+def within_box(side, piece, box):
+    """(first, last) of an interval with all parameters at which a piece of a trimming curve is in a
+    box."""
+    o = side.own[S.R_PIECES] + S.PIECE_REALS * piece
+    first, last = side.numbers[o], side.numbers[o + 1]
+    for _ in range(NARROWINGS):
+        step = (last - first) / ON_A_PIECE
+        low, high = last, first
+        for i in range(ON_A_PIECE):
+            ta, tb = first + i * step, first + (i + 1) * step
+            if meets(part_box(side, piece, ta, tb), box):
+                low, high = min(low, ta), max(high, tb)
+        if low >= high:
+            return first, first
+        narrowed = high - low <= 0.5 * (last - first)
+        first, last = low, high
+        if not narrowed:
+            break
+    return first, last
+
+
+@kernel
+def from_trim(a, b, piece, t, at, counts):
+    """(on A's part, parameters, distance) of a place on a trimming curve of A and of the point of
+    B's part that is nearest to it, sought from `at`."""
+    side, own = a.side, a.side.own
+    coedge = own[own[S.PIECES] + S.PIECE_INTS * piece]
+    u, v, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, t)
+    u += side.numbers[own[S.R_PIECES] + S.PIECE_REALS * piece + S.P_SHIFT]
+    if not holds(a.box, u, v):
+        return False, (u, v, at[0], at[1]), inf
+    start = (u, v, at[0], at[1])
+    q, distance = nearest(side, a.leaf, S.Box(u, u, v, v), b.side, b.leaf, b.box, start, counts)
+    return True, q, distance
+
+
+@kernel
+def towards(a, b, piece, t, q):
+    """The parameter of a trimming curve of A whose tangent is nearest to a point of B."""
+    own = a.side.own
+    feature = own[own[S.PIECES] + S.PIECE_INTS * piece + 1]
+    jet = moved_jet(a.side.pose, feature_jet(a.side.ints, a.side.reals, feature, -1, t, 0.0))
+    slope = dot(jet[1], jet[1])
+    if slope <= 0.0:
+        return t
+    y = leaf_jet(b.side, b.leaf, q[2], q[3])[0]
+    return t + dot(jet[1], sub(y, jet[0])) / slope
 
 
 @kernel
@@ -36,18 +91,22 @@ def nearest_on_trim(a, b, counts):
         ta, tb = side.numbers[o], side.numbers[o + 1]
         if tried >= ON_A_LEAF or not meets(part_box(side, piece, ta, tb), a.box):
             continue
-        coedge = own[own[S.PIECES] + S.PIECE_INTS * piece]
+        ta, tb = within_box(side, piece, a.box)
+        at, here = 0.5 * (ta + tb), inf
         for i in range(ON_A_PIECE):
             t = ta + (i + 0.5) / ON_A_PIECE * (tb - ta)
-            u, v, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, t)
-            u += side.numbers[o + S.P_SHIFT]
-            if not holds(a.box, u, v):
-                continue
-            tried += 1
-            at = S.Box(u, u, v, v)
-            q, distance = nearest(
-                side, a.leaf, at, b.side, b.leaf, b.box, (u, v, best[2], best[3]), counts
-            )
+            known, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
+            tried += 1 if known else 0
+            if distance < here:
+                at, here = t, distance
             if distance < least:
                 best, least = q, distance
+        if here > least:
+            continue
+        for _ in range(SLIDES):  # so that the way to B is across the curve
+            t = min(max(towards(a, b, piece, at, best), ta), tb)
+            _, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
+            if distance >= least:
+                break
+            best, least, at = q, distance, t
     return best, least

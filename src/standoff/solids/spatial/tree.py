@@ -25,6 +25,7 @@ from standoff.solids.spatial.leaves import (
     parts_of_edge,
     vertex_leaf,
 )
+from standoff.solids.spatial.screws import put_screws
 from standoff.solids.spatial.tolerances import CONE_ROUNDINGS, NO_AXIS
 from standoff.solids.spatial.trims import Piece, pieces_of
 
@@ -47,6 +48,7 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, 
     found = [
         leaf for chart in charts.values() for leaf in face_leaves(boundary, chart, pieces, size)
     ]
+    put_screws(found, charts)
     sampled = sampled_edges(proven_kinds(boundary, charts, pieces), boundary.edge_kinds)
     ranges = {k: parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
     cones = edge_cones(charts, pieces, ranges)
