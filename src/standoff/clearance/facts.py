@@ -47,6 +47,12 @@ def report_facts(report: Report) -> dict[str, Any]:
     }
 
 
+def in_cavity(row: Row) -> str | None:
+    """Return the name of the body that is in a closed cavity of the other, if one is."""
+    which = getattr(row.answer, "cavity", "")
+    return str(row.answer.names["AB".index(which)]) if which else None
+
+
 def row_facts(row: Row) -> dict[str, Any]:
     """Return one near pair."""
     answer, fit = row.answer, row.fit
@@ -55,6 +61,7 @@ def row_facts(row: Row) -> dict[str, Any]:
         "pieces": answer.pieces,
         "verdict": row.verdict.name,
         **{name: getattr(answer, name) for name in ANSWERED},
+        "in_cavity": in_cavity(row),
         "certified": not row.nearest.uncertified,
         "uncertified_frames": row.nearest.uncertified,
         "time": row.nearest.time,

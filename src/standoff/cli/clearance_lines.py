@@ -13,6 +13,7 @@ from rich.text import Text
 
 from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.assembly import AssemblyFile, Source
+from standoff.clearance.facts import in_cavity
 from standoff.clearance.report import Looked, Report, Row, at_least, no_clearance
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
@@ -94,10 +95,10 @@ def _table(rows: Sequence[Row], unit: str, *, timed: bool) -> Table:
 
 
 def body_text(row: Row) -> list[str]:
-    """Return the names of the two bodies, each with that of its piece."""
-    answer = row.answer
+    """Return the names of the two bodies, each with that of its piece, and which is in a cavity."""
+    answer, within = row.answer, in_cavity(row)
     return [
-        printable(" ".join(filter(None, each)))
+        printable(" ".join(filter(None, each))) + (", in a cavity" if each[0] == within else "")
         for each in zip(answer.names, answer.pieces, strict=True)
     ]
 

@@ -174,6 +174,10 @@ class SolidProximity(KeepsReadOnly, PlainData):
         With the status OVERLAPPING.
     inside : "A", "B" or ""
         Which solid is inside the other's material.
+    cavity : "A", "B" or ""
+        Which solid is in a closed cavity of the other, or in the plane in one of its holes, and
+        not in its material: it cannot leave. With the status CONVERGED or CONTINUUM; of compounds
+        it is said of the nearest pieces.
     open : tuple of OpenPair
         With the status WITHIN or DEADLINE: the pairs of pieces that are not closed, those with the
         least bound first and 64 at most; ``counts.open`` says how many there are. Where the
@@ -214,6 +218,7 @@ class SolidProximity(KeepsReadOnly, PlainData):
     counts: SolidCounts
     poses: tuple[Array, Array]
     pieces: tuple[str, str] = ("", "")
+    cavity: Literal["A", "B", ""] = ""
 
     @property
     def certified(self) -> bool:

@@ -199,7 +199,7 @@ def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None)
         pair, status, bounds, pairs, smooth, _counts(searched.counts), continuum, inside
     )
     if apart and proven:
-        return found
+        return found if inside else replace(found, cavity=_in_hole(pair, found))
     listed, count = _open(pair, searched)
     return replace(found, open=listed, counts=found.counts._replace(open=count))
 
@@ -255,6 +255,14 @@ def _answer(
         counts=counts,
         poses=(pair.poses[:12], pair.poses[12:]),
     )
+
+
+def _in_hole(pair: Queried, found: SolidProximity) -> Literal["A", "B", ""]:
+    """Which solid is in a hole of the other: the nearest point is then on that loop, as nothing is
+    between."""
+    if found.feature_b.index >= len(pair.b.loops[0].curves):
+        return "A"
+    return "B" if found.feature_a.index >= len(pair.a.loops[0].curves) else ""
 
 
 def _unseen() -> NearestPair:

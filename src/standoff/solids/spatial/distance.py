@@ -307,4 +307,15 @@ def answer_of(pair: PlacedPair, found: Found, places: list[Place], told: Told) -
         parameters_b=first.parameters_b, minima=minima, continuum=told.continuum,
         overlap=told.overlap, inside=told.inside, open=told.open, gradient_rows=gradient,
         smoothness=told.smoothness, counts=found.told._replace(open=told.n_open), poses=pair.poses,
+        cavity=_cavity(pair, told.status, first),
     )  # fmt: skip
+
+
+def _cavity(pair: PlacedPair, status: Status, nearest: NearestPair) -> Inside:
+    """Which solid is in a cavity of the other: the nearest point is then on the cavity's shell, as
+    nothing is between."""
+    if status not in (Status.CONVERGED, Status.CONTINUUM):
+        return ""
+    if pair.b.in_cavity(nearest.feature_b):
+        return "A"
+    return "B" if pair.a.in_cavity(nearest.feature_a) else ""

@@ -19,6 +19,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
+from standoff.read_only import KeepsReadOnly
 from standoff.solids.spatial.analytic import natural_of, turned_axis
 from standoff.solids.spatial.derivative_bounds import curve_derivatives, surface_derivatives
 from standoff.solids.spatial.tolerances import (
@@ -45,7 +46,7 @@ UNKNOWN = np.pi
 
 
 @dataclass
-class Leaf:
+class Leaf(KeepsReadOnly):
     """One leaf, as ``kernels.solids.spatial_layout`` packs it."""
 
     dim: int

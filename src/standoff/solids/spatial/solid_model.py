@@ -12,10 +12,13 @@ from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.bodies.report import BodyReport, BoundaryReport
+from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
+from standoff.read_only import KeepsReadOnly
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
     from standoff.bodies.rounding.parts import Origin
 
 
-class SolidModel:
+class SolidModel(KeepsReadOnly):
     """What the search reads of a solid; its arguments are those of `Solid`, and so are its errors.
 
     Attributes
@@ -52,8 +55,11 @@ class SolidModel:
     ) -> None:
         if not isinstance(boundary, Boundary):
             raise StandoffError(
-                f"Solid of {boundary!r}: give a Boundary or a Body.", "boundary", boundary
+                f"Solid of {shown(boundary)}: give a Boundary or a Body.", "boundary", boundary
             )
+        volume = None if volume is None else positive(volume, "volume")
+        area = None if area is None else positive(area, "area")
+        relative = positive(relative, "relative")
         check_solid(boundary)
         self._given = boundary
         self._origins: dict[Feature, Origin] = {}
@@ -134,6 +140,22 @@ class SolidModel:
         first = (0, self.boundary.n_faces, self.boundary.n_faces + self.boundary.n_edges)
         names = ("face", "edge", "vertex")
         return Feature(names[2 - part.dim], part.feature - first[2 - part.dim])
+
+    @cached_property
+    def _cavity_parts(self) -> frozenset[Feature]:
+        report = getattr(self.boundary, "report", None)
+        if not isinstance(report, BoundaryReport):
+            return frozenset()
+        faces = {f for k in report.cavities for f in report.shells[k]}
+        edges = {j for f in faces for j, _ in self.boundary.face_parts[f].loop}
+        ends = [self.boundary.edge_parts[j] for j in edges]
+        vertices = {v for edge in ends for v in (edge.first, edge.last) if v is not None}
+        named = (("face", faces), ("edge", edges), ("vertex", vertices))
+        return frozenset(Feature(kind, k) for kind, numbers in named for k in numbers)
+
+    def in_cavity(self, feature: Feature) -> bool:
+        """Is a face, edge or vertex on the wall of a cavity?"""
+        return feature in self._cavity_parts
 
     def feature_of(self, leaf: int) -> Feature:
         """The face, edge or vertex of a leaf; of a body with a radius that of its core."""
