@@ -494,6 +494,7 @@ def pair_calls() -> list[Call]:
         "PredictorCorrector": (so, {"tolerance": 1e-9, "deadline": 40}),
         "Tracker": (so, {**pair, "dt": 1e-3, "law": law}),
         "World": (so, {"bodies": {"ball": SPHERE, "box": BOX}, "within": 0.5, "dt": 1e-3}),
+        "Solid": (so, {"boundary": BOX, "volume": 1.0, "area": 6.0, "relative": 1e-6}),
         "compound": (so, {"pieces": {"ball": SPHERE, "box": (BOX, AWAY)}}),
         "PointTracker": (so, {"body": DISC, "dt": 1e-3, "law": so.PaperLaw()}),
         "distance": (so, posed),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from standoff.points import PointTracker
     from standoff.recording import Recording, open_recording, track
     from standoff.robots import Robot
-    from standoff.solids import PlanarSolid
+    from standoff.solids import PlanarSolid, Solid
     from standoff.tracking import (
         Event,
         Feature,
@@ -83,7 +83,7 @@ else:
             "standoff.points": ("PointTracker",),
             "standoff.recording": ("Recording", "open_recording", "track"),
             "standoff.robots": ("Robot",),
-            "standoff.solids": ("PlanarSolid",),
+            "standoff.solids": ("PlanarSolid", "Solid"),
             "standoff.view": ("view",),
             "standoff.world": ("World", "compound"),
         },
@@ -123,6 +123,7 @@ __all__ = [
     "Proximity",
     "Recording",
     "Robot",
+    "Solid",
     "StandoffError",
     "Status",
     "Tracker",
