@@ -209,7 +209,7 @@ duration = 0.5
 
 
 def test_what_takes_convex_bodies_alone_says_so(command: Command, folder: Path) -> None:
-    for name, arguments in (("track", ()), ("automaton", ()), ("impact", ())):
+    for name, arguments in (("track", ()), ("automaton", ())):
         code, told = command(PAIR + "[track]\nstep = 0.5\nduration = 1.0\n", name, *arguments)
         assert code == 2, name
         assert "nothing tracks yet" in told

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from families.solid_shapes import ball, peg, socket, tube
 from standoff.geometry import ConicArc, Line
+from standoff.motion import ConstantTwist
 from standoff.solids import OpenPair, Overlap, PlanarSolid, SolidProximity
 from standoff.solids.of_pieces import OfPieces, answer_of_pieces, turned
 from standoff.world import SolidPairAnswer
@@ -393,6 +394,29 @@ def test_every_convex_body_may_be_beside_a_solid() -> None:
     assert found.unique
 
 
+def test_the_first_impact_of_a_world_with_solids() -> None:
+    """Of a ball in a socket and a box that falls on the ground, whichever is first."""
+    still = at(0.0)
+    world = so.World(
+        {
+            "socket": SOCKET,
+            "ball": BALL,
+            "ground": so.shapes.halfspace(),
+            "box": so.shapes.box(0.2, 0.2, 0.2),
+        },
+        within=1.0,
+        fixed={"ground": at(0.0, 0.0, -2.0), "socket": still},
+    )
+    for speed, names, time in ((1.0, ("ground", "box"), 1.9), (0.2, ("socket", "ball"), 6.0)):
+        paths = {
+            "ball": ConstantTwist(still, ([0, 0.1, 0], [0, 0, 0])),
+            "box": ConstantTwist(at(2.0), ([0, 0, -speed], [0, 0, 0])),
+        }
+        found = world.time_of_impact(paths, 8.0)
+        assert found.names == names
+        assert time - 1e-5 < found.time <= time + 1e-9
+
+
 def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:
     for shape, words in (
         (so.shapes.segment(0.5), "a radius makes it a ball or a capsule"),
@@ -406,9 +430,6 @@ def test_what_solids_cannot_do_is_refused_with_what_to_use() -> None:
         assert "ignore the pair" in str(caught.value)
         # where it is in no such pair it may stay
         so.World({"socket": SOCKET, "other": shape}, ignore=[("socket", "other")])
-    world = so.World({"socket": SOCKET, "ball": BALL})
-    with pytest.raises(so.StandoffError, match="'socket' is or has a solid: step the world"):
-        world.time_of_impact({"socket": at(0.0), "ball": at(0.1)}, 1.0)
     with pytest.raises(TypeError, match="give a Body or a Solid"):
         so.compound({"one": 3})  # type: ignore[dict-item]
     with pytest.raises(TypeError, match=r"'b' is \[1\]: give a Body, a Solid or a Compound"):

@@ -74,7 +74,7 @@ def scene_facts(scene: Scene) -> dict[str, Any]:
 OF_SOLIDS = (
     *("distance", "lower_bound", "upper_bound", "slack", "point_a", "point_b", "normal"),
     *("feature_a", "feature_b", "parameters_a", "parameters_b", "minima", "continuum"),
-    *("overlap", "inside", "smoothness", "status", "certified", "counts"),
+    *("overlap", "inside", "cavity", "smoothness", "status", "certified", "counts"),
 )
 """Attributes of an answer of solids that are printed, in their order."""
 

@@ -88,6 +88,9 @@ def _solid_lines(scene: Scene, answer: SolidProximity) -> list[str]:
     if answer.inside:
         inner, outer = scene.pair if answer.inside == "A" else scene.pair[::-1]
         lines.append(line("inside", f"{inner} is inside the material of {outer}"))
+    if answer.cavity:
+        inner, outer = scene.pair if answer.cavity == "A" else scene.pair[::-1]
+        lines.append(line("inside", f"{inner} is in a cavity of {outer}"))
     if answer.continuum is not None:
         lines.append(line("continuum", f"a {answer.continuum.kind} of nearest pairs"))
     elif len(answer.minima) > 1:

@@ -6,7 +6,7 @@ from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
     from standoff.impact.answer import Impact, ImpactStatus
-    from standoff.impact.search import time_of_impact
+    from standoff.impact.query import time_of_impact
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -15,7 +15,7 @@ else:
                 "Impact",
                 "ImpactStatus",
             ),
-            "standoff.impact.search": ("time_of_impact",),
+            "standoff.impact.query": ("time_of_impact",),
         },
     )
 

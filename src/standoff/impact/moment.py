@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.bodies.planes import outer_plane
 from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.kernels.body import layout as L
@@ -41,7 +40,7 @@ class Placed:
 
 
 class Box:
-    """The box around a body's core, in body axes.
+    """The box around a body's core, or a solid, in body axes.
 
     Attributes
     ----------
@@ -59,19 +58,24 @@ class Box:
         Outward, of a half-space only.
     """
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: Any) -> None:
         self.plane = not body.bounded
+        self.radius = 0.0
         self.middle, self.half = np.zeros(3), np.zeros(3)
         if self.plane:
             # its middle is the plane's point nearest to its origin: it stands off by its offset
             self.normal, offset = outer_plane(body)
             self.middle = offset * self.normal
+            self.radius = float(body.reals[L.RADIUS] + body.reals[L.SLACK])
+        elif hasattr(body, "outline"):  # a planar solid
+            low, high = body.outline.low, body.outline.high
+            self.middle = np.append(0.5 * (low + high), 0.0)
+            self.half = np.append(0.5 * (high - low) + body.slack, 0.0)
         else:
-            self.middle = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
-            self.half = body.reals[L.BOX_HALF : L.BOX_HALF + 3] + body.reals[L.SLACK]
-        self.radius = float(body.reals[L.RADIUS])
-        if self.plane:
-            self.radius += float(body.reals[L.SLACK])
+            reals = getattr(body, "boundary", body).reals
+            self.middle = reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
+            self.half = reals[L.BOX_HALF : L.BOX_HALF + 3] + reals[L.SLACK]
+            self.radius = float(reals[L.RADIUS])
         self.reach = length(self.half)
 
 

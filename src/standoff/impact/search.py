@@ -6,8 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from standoff.bodies.body import Body
-from standoff.checks.numbers import number, positive, whole_number
+from standoff.checks.numbers import number, positive
 from standoff.errors import StandoffError
 from standoff.impact.answer import Impact, ImpactStatus
 from standoff.impact.chord import Chords
@@ -18,13 +17,8 @@ from standoff.impact.tolerances import (
     LEAST_TOLERANCE,
     NEIGHBOURS,
     SHORTEST_TIME,
-    TRACKER_SHARE,
-    TRACKER_TOLERANCE,
 )
-from standoff.motion.bounds import breaks_of, known
-from standoff.motion.moving import MotionLike, moving
-from standoff.tracking.laws import PredictorCorrector
-from standoff.tracking.tracker import Tracker
+from standoff.motion.bounds import breaks_of
 
 BALLS_APART = 0.3
 """Bounding balls farther apart than this part of their radii stand for the bodies."""
@@ -33,75 +27,7 @@ BALLS_AIM = 0.2
 """There the search aims at this part of the radii."""
 
 PROBES = 8
-"""Instants looked at beyond the bracket's beginning for one that is proven to be in contact, each
-twice as far as the one before."""
-
-
-def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
-    a: Body,
-    b: Body,
-    path_a: MotionLike,
-    path_b: MotionLike,
-    duration: float,
-    *,
-    clearance: float = 0.0,
-    tolerance: float = 1e-9,
-    start: float = 0.0,
-    max_evaluations: int = 10_000,
-) -> Impact:
-    """The first time at which two moving bodies come to a clearance: never later than the true one.
-
-    Each interval of time is proven free by the certified bounds at its ends and the greatest
-    accelerations within it (docs/impact-proof.md).
-
-    Parameters
-    ----------
-    a, b : Body
-        Two spatial bodies, or two planar ones.
-    path_a, path_b : path or pose
-        A path of ``standoff.motion``; with a pose the body is at rest. A path of your own, or a
-        function of time that returns a pose, is wrapped in ``standoff.motion.Bounded``, which says
-        how fast it can be.
-    duration : float
-        Time to search [s]; ``start + duration`` must differ from ``start`` in floating point.
-    clearance : float
-        Distance that counts as impact, zero for contact [length].
-    tolerance : float
-        The search ends within this distance of the clearance, relative to the sum of the bodies'
-        sizes (without a half-space's).
-    start : float
-        Time on the paths' clock at which the search begins [s].
-    max_evaluations : int
-        Greatest number of instants to look at.
-
-    Returns
-    -------
-    Impact
-
-    Raises
-    ------
-    TypeError
-        Not a body, neither path nor pose, or a path of which no bounds are known.
-    ValueError
-        A negative clearance, a tolerance or duration that is not positive, a budget that is not a
-        whole number of at least 2, times beyond 1e50 s, a duration that is negligible compared with
-        the start, a pair that cannot be tracked, or a time that a path refuses.
-    """
-    paths = moving(path_a, "path_a"), moving(path_b, "path_b")
-    for path in paths:
-        known(path)
-    begin, end = checked_times(paths, start, duration)
-    clearance = checked_clearance(clearance)
-    tolerance = positive(tolerance, "tolerance")
-    whole_number(max_evaluations, "max_evaluations", 2)
-    search = _Search(_tracker(a, b, tolerance), paths, clearance, tolerance, max_evaluations)
-    return search.run(begin, end)
-
-
-def _tracker(a: Body, b: Body, tolerance: float) -> Tracker:
-    """A tracker whose bounds are closer than the search's tolerance."""
-    gap = min(TRACKER_TOLERANCE, TRACKER_SHARE * tolerance)
-    return Tracker(a, b, law=PredictorCorrector(tolerance=gap))
+"""Instants looked at beyond the bracket's beginning for one that is proven to be in contact."""
 
 
 def checked_clearance(clearance: float) -> float:
@@ -156,18 +82,32 @@ class _Spent(Exception):
     """The budget of evaluations ran out."""
 
 
-class _Search:
+class Search:
+    """The search of one pair, by what a tracker proves at instants.
+
+    Parameters
+    ----------
+    tracker : with the calls `start` and `step` of `Tracker`
+    boxes : of both bodies
+    size : of both together, without a half-space's, length
+    paths : of both
+    asked : the clearance, length; the tolerance, relative; the budget of instants
+    """
+
+    farther = 2.0
+    """How many times as far as the one before each of `PROBES` is."""
+
     def __init__(
         self,
-        tracker: Tracker,
+        tracker: Any,
+        boxes: tuple[Box, Box],
+        size: float,
         paths: tuple[Any, Any],
-        clearance: float,
-        tolerance: float,
-        budget: int,
+        asked: tuple[float, float, int],
     ) -> None:
         self.tracker, self.paths = tracker, paths
-        self.boxes = Box(tracker.a), Box(tracker.b)
-        self.clearance, self.relative, self.budget = clearance, tolerance, budget
+        self.boxes, self.size = boxes, size
+        self.clearance, self.relative, self.budget = asked
         self.chords = Chords(self.boxes, paths)
         self.reach = sum(box.reach + box.radius for box in self.boxes)
         self.steps = self.evaluations = self.queries = 0
@@ -180,8 +120,7 @@ class _Search:
         self.now = self.look(start)
         self.chords.prepare(self.now, stops[0])
         self.known: Moment | None = None  # the last proven instant at which the tracker was asked
-        size = sum(body.size for body in (self.tracker.a, self.tracker.b) if body.bounded)
-        self.tolerance = self.relative * (size or abs(self.now.ball.lower))
+        self.tolerance = self.relative * (self.size or abs(self.now.ball.lower))
         try:
             for stop in stops:
                 found = self._cross(start, stop)
@@ -197,6 +136,9 @@ class _Search:
         if self.evaluations >= self.budget:
             raise _Spent
         self.evaluations += 1
+        return self._seen(time)
+
+    def _seen(self, time: float) -> Moment:
         return Moment(self.boxes, self.paths, time)
 
     def ask(self, moment: Moment) -> None:
@@ -222,9 +164,7 @@ class _Search:
     def _cross(self, start: float, stop: float) -> Impact | None:
         """Prove time from the present instant up to `stop`; what was found on the way, or None."""
         self.chords.prepare(self.now, stop)
-        self.paces = {
-            balls: Pace(self.chords.first_sag(self.now, balls)) for balls in (True, False)
-        }
+        self.paces = self._paces()
         ahead: list[Moment] = []
         before = math.inf  # the next instant to look at is before this one
         while self.now.time < stop:
@@ -262,10 +202,14 @@ class _Search:
             ahead.append(self.look(time))
         return None
 
+    def _paces(self) -> dict[bool, Any]:
+        """How far to look ahead, by the bodies and by their balls."""
+        return {balls: Pace(self.chords.first_sag(self.now, balls)) for balls in (True, False)}
+
     def _ahead_by_balls(self, longest: float) -> float:
         """How far the bounding balls prove, where they are apart though near: beside a corner."""
         gap = self.gap(self.now, balls=True)
-        return self.paces[True].ahead(gap, self.now.ball.rate, 0.5 * gap, longest)
+        return float(self.paces[True].ahead(gap, self.now.ball.rate, 0.5 * gap, longest))
 
     def _move_to(self, moment: Moment) -> None:
         self.now = moment
@@ -279,14 +223,17 @@ class _Search:
                 self.ask(first)
                 self.known = first
                 self.ask(last)
-            before, after = self.gap(first, balls), self.gap(last, balls)
-            if min(before, after) <= 0.0:
+            if min(self.gap(first, balls), self.gap(last, balls)) <= 0.0:
                 continue
-            sag = self.chords.sag(first, last, balls)
-            self.paces[balls].saw_sag(sag, last.time - first.time)
-            if sag < (math.sqrt(before) + math.sqrt(after)) ** 2:
+            if self._kept(first, last, balls):
                 return True
         return False
+
+    def _kept(self, first: Moment, last: Moment, balls: bool) -> bool:
+        """The same by the bodies, or their balls, at two instants at which they keep it."""
+        sag = self.chords.sag(first, last, balls)
+        self.paces[balls].saw_sag(sag, last.time - first.time)
+        return sag < (math.sqrt(self.gap(first, balls)) + math.sqrt(self.gap(last, balls))) ** 2
 
     def _useful(self, moment: Moment) -> bool:
         """Will it serve once more: it is clear of the clearance, or known to be in contact?"""
@@ -321,7 +268,7 @@ class _Search:
         left = max(now.upper - self.clearance, tolerance)
         first = 1.5 * left / -rate
         for k in range(PROBES):
-            span = min(first * 2.0**k, turn)
+            span = min(first * self.farther**k, turn)
             time = now.time + span
             if not now.time < time <= self.end or time >= self.latest:
                 break

@@ -75,7 +75,7 @@ def first_impact(
     """
     start, end = scene.window(settings)
     duration = end - start
-    a, b = scene.pair_bodies
+    a, b = scene.pair_shapes
     path_a, path_b = (motion.path for motion in scene.pair_motions)
     try:
         return time_of_impact(a, b, path_a, path_b, duration, clearance=clearance, start=start)

@@ -143,8 +143,9 @@ class Scene:
             if not isinstance(body, Body):
                 raise SceneError(
                     f"{shown(name)} is a solid that need not be convex, which nothing tracks yet: "
-                    "`standoff distance` asks one instant, and with [world] in place of the pair "
-                    "`standoff clearance --motion` and `standoff track` ask every frame by itself",
+                    "`standoff distance` asks one instant, `standoff impact` the first contact, "
+                    "and with [world] in place of the pair `standoff clearance --motion` and "
+                    "`standoff track` ask every frame by itself",
                     key=f"bodies.{name}",
                     file=self.file,
                 )

@@ -208,7 +208,8 @@ _PLAIN = (
 def shown_size(answer: Any, bodies: Any = None) -> float:
     """Length compared with which numbers of an answer are roundoff: of a body, or of a far
     point. `bodies` are those of an answer that does not have them."""
-    sizes = [body.size for body in bodies or answer.bodies if body.bounded]
+    given = bodies or getattr(answer, "bodies", ())
+    sizes = [body.size for body in given if body.bounded]
     return float(np.nanmax([*sizes, *np.abs(answer.point_a), *np.abs(answer.point_b), 0.0]))
 
 

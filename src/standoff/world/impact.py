@@ -21,7 +21,6 @@ from standoff.tracking.inputs import matrix_and_mark
 from standoff.world.model import Model
 from standoff.world.pieces import PieceUnion
 from standoff.world.poses import check_level, check_names
-from standoff.world.solid_pairs import refuse_solids
 from standoff.world.swept import Follower, meetings
 
 OPTIONS = frozenset(("clearance", "tolerance", "start", "max_evaluations"))
@@ -68,11 +67,6 @@ def first_impact(
     StandoffError
         A path that is missing, or as ``so.time_of_impact``, with the names of the body or the pair.
     """
-    refuse_solids(
-        dict(world.listed),
-        "time_of_impact",
-        "step the world along the paths (World.run), and look at `clearance`",
-    )
     given, (start, end) = _checked(world, paths, duration, options)
     parts = [
         part

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.impact.moment import EPS, Box, Placed
 from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.motion.bounds import bounds_of, breaks_of
@@ -24,18 +23,18 @@ MOST_SPANS = 32
 
 
 class Follower:
-    """A convex piece and the path of its frame, from one time to another [s].
+    """A piece and the path of its frame, from one time to another [s].
 
     Attributes
     ----------
-    body : Body
+    body : Body, Solid or PlanarSolid
     path
         One that knows its bounds.
     rests : bool
         Does it stay where it is, from the first time to the last?
     """
 
-    def __init__(self, body: Body, path: Any, first: float, last: float) -> None:
+    def __init__(self, body: Any, path: Any, first: float, last: float) -> None:
         self.body, self.path = body, path
         self._box, self._first = Box(body), first
         self.rests = not breaks_of(path, first, last)
