@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,8 @@ from draws import draws
 from families.solid_shapes import ball, bracket, peg, prism, socket, tube
 from standoff.geometry import ConicArc
 from standoff.impact import ImpactStatus
+from standoff.impact.moment import Box
+from standoff.impact.solids import Asked, SolidSearch
 from standoff.motion import ConstantTwist, Fixed, Screw
 from standoff.solids import distance
 
@@ -156,3 +160,26 @@ def test_a_path_at_rest() -> None:
         so.time_of_impact(SLOT, ball(0.3), Fixed(STILL), Fixed(at(1, 1, 1.5)), 1.0).status
         is ImpactStatus.NO_IMPACT
     )
+
+
+class Unproven:
+    """A tracker that proves nothing from a time on: so told by how far B has come."""
+
+    def start(self, pose_a: so.Pose, pose_b: so.Pose) -> Asked:
+        answer = distance(SLOT, ball(0.3), pose_a, pose_b)
+        if pose_b.translation[0] > 1.2:
+            answer = replace(answer, lower_bound=-np.inf, status=so.Status.WITHIN)
+        return Asked(answer)
+
+    def step(self, before: Asked, *poses: so.Pose) -> tuple[Asked, so.solids.SolidProximity]:
+        now = self.start(*poses)
+        return now, now.proximity
+
+
+def test_what_is_not_proven_is_not_told_to_graze() -> None:
+    paths = Fixed(STILL), going(at(1.0, 1.0, 1.5), 0.25, 0, 0)
+    boxes = Box(SLOT), Box(ball(0.3))
+    search = SolidSearch(Unproven(), boxes, 5.0, paths, (0.0, 1e-9, 1000))
+    found = search.run(0.0, 5.0)
+    assert found.status is ImpactStatus.UNDECIDED
+    assert found.time < 1.0
