@@ -89,6 +89,7 @@ def test_inside_and_beside_feel_the_same() -> None:
     assert felt[0] == pytest.approx(felt[1], rel=0.02)
 
 
+@pytest.mark.soak
 def test_low_gains_suffice(monkeypatch: pytest.MonkeyPatch) -> None:
     assert statements._gains().holds is True
     wrong = {**statements.by_gain(), "greatest_error_m": np.array([2e-6, 0.0, 0.0])}

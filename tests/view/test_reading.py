@@ -89,6 +89,7 @@ def test_a_body_inside_another_is_seen_with_the_depth(
         assert desk.errors == []
 
 
+@pytest.mark.soak
 def test_a_dragged_body_goes_back(page_of: Callable[..., Any], tab: Callable[..., Any]) -> None:
     ball = INSIDE.replace("[10, 5, 8]", "[10, 5, 60]").replace('a = "case"', 'a = "marble"')
     with page_of(ball.replace('b = "marble"', 'b = "case"')) as page:

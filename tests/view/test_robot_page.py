@@ -148,6 +148,7 @@ def test_bad_input(bar: so.Robot) -> None:
             bar.view(what, open=False, **options)
 
 
+@pytest.mark.soak
 @pytest.mark.usefixtures("slowly")
 def test_a_proof_in_a_browser(chromium: Any, tab: Callable[..., Any]) -> None:
     pytest.importorskip("matplotlib", reason="matplotlib is not installed (extra 'plot')")
