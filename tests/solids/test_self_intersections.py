@@ -214,3 +214,18 @@ def test_neighbours_on_a_face_do_not_meet() -> None:
     )
     told = si._neighbours(solid, group, rows, 2.0 * step)
     assert told.tolist() == [True, False, False]
+
+
+@pytest.mark.parametrize("share", [1e-9, 0.4])
+def test_what_became_of_points_of_one_face(share: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neighbours are undecided; others meet."""
+    solid = egg(1.0, 0.7, 0.5)
+    leaf = next(k for k, one in enumerate(solid.leaves) if one.dim == 2)
+    u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
+    u, v = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
+    group = OwnPairs((0, 0), np.array([[leaf, leaf]]), np.zeros((0, 4)))
+    row = np.array([[K.MET, 0.0, u, v, u + share * (u1 - u0), v]])
+    monkeypatch.setattr(si, "own_pairs", lambda solid, within: ([group], 0))
+    monkeypatch.setattr(si, "_looked_at", lambda *given: row.copy())
+    found = si.self_intersections(solid)
+    assert (found.undecided, len(found.places)) == ((1, 0) if share < 1e-6 else (0, 1))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 import standoff as so
 from draws import draws
 from families.solid_shapes import ball, bracket, peg, prism, socket, tube
-from standoff.geometry import ConicArc
+from standoff.geometry import ConicArc, Line
 from standoff.impact import ImpactStatus
 from standoff.impact.moment import Box
 from standoff.impact.solids import Asked, Lipschitz, SolidSearch
@@ -101,6 +102,18 @@ def test_in_the_plane() -> None:
     found = so.time_of_impact(ring, disc, STILL, going(STILL, 0.1, 0.0, 0.0), 5.0)
     assert found.status is ImpactStatus.IMPACT
     assert 2.0 - 1e-6 < found.time <= 2.0 <= found.latest < 2.0 + 1e-6
+
+
+def test_a_bar_turns_against_a_disc() -> None:
+    bar = so.PlanarSolid.from_loops(
+        [Line(a, b) for a, b in pairwise([(-1, -0.1), (1, -0.1), (1, 0.1), (-1, 0.1), (-1, -0.1)])]
+    )
+    disc = so.PlanarSolid.from_loops([ConicArc((0, 0), (0.1, 0), (0, 0.1))])
+    turning = Screw(STILL, axis=[0.0, 0.0, 1.0], angular_rate=1.0)
+    found = so.time_of_impact(bar, disc, turning, at(0.0, 0.8, 0.0), 3.0)
+    true = np.arccos(0.25)
+    assert found.status is ImpactStatus.IMPACT
+    assert true - 1e-5 < found.time <= true + 1e-9
 
 
 def test_what_is_no_solid_is_refused() -> None:
