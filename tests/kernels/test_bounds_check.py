@@ -76,8 +76,14 @@ def test_an_index_out_of_range_is_seen(compiled: bool) -> None:
     assert done.returncode == 0, done.stderr + done.stdout
 
 
-def test_no_kernel_leaves_its_arrays() -> None:
-    short = ("--python", "--poses", "1", "--frames", "2")
+SEED = pytest.param(("--seed", "1"), id="the same pairs")
+# As plain Python a pair that is hard to answer takes minutes.
+FRESH = pytest.param((), id="fresh pairs", marks=[pytest.mark.soak])
+
+
+@pytest.mark.parametrize("seed", [SEED, FRESH])
+def test_no_kernel_leaves_its_arrays(seed: tuple[str, ...]) -> None:
+    short = ("--python", "--poses", "1", "--frames", "2", *seed)
     families = ("NURBS-box", "planar-point", "solids")
     done = run("-m", "benchmarks.bounds_check", *short, *families, compiled=False)
     assert done.returncode == 0, done.stderr + done.stdout
