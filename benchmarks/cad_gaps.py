@@ -75,7 +75,8 @@ def posed(a: Loaded, b: Loaded, gap: float, rng: np.random.Generator) -> Pose | 
     return None
 
 
-def their_distance(a: Loaded, b: Loaded, pose: Pose) -> float:
+def their_distance(a: Any, b: Any, pose: Pose) -> float:
+    """Of two whose `theirs` are shapes of OpenCASCADE."""
     from OCP.BRepExtrema import BRepExtrema_DistShapeShape
     from OCP.gp import gp_Trsf
     from OCP.TopLoc import TopLoc_Location

@@ -52,10 +52,14 @@ def turned(steps: list[tuple[float, float]], top: float) -> Solid:
 
 def drawn(faces: int, rng: np.random.Generator) -> Solid:
     """A part of about so many faces, of size about 1."""
+    return turned(drawn_steps(faces, rng), 1.0)
+
+
+def drawn_steps(faces: int, rng: np.random.Generator) -> list[tuple[float, float]]:
+    """Of such a part (height, radius) of each step upwards."""
     count = max((faces - 1) // 2, 1)
     radii = np.where(np.arange(count) % 2, 0.12, 0.25) * rng.uniform(0.8, 1.2, count)
-    steps = [(k / count, float(r)) for k, r in enumerate(radii)]
-    return turned(steps, 1.0)
+    return [(k / count, float(r)) for k, r in enumerate(radii)]
 
 
 def posed(

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from standoff.solids.answer import Overlap
+from standoff.solids.asked import Asked
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
 from standoff_studies.soak import (
@@ -139,7 +140,7 @@ def asked():
         key = a.name, pose_a.tobytes(), pose_b.tobytes()
         if key not in known:
             # few are enough for a true interval, and for these poses nearly always for a proof
-            known[key] = spatial_distance(a, b, pose_a, pose_b, evaluations=5000)
+            known[key] = spatial_distance(a, b, pose_a, pose_b, Asked(deadline=5000))
         return known[key]
 
     return ask

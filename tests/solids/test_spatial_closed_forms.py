@@ -7,6 +7,7 @@ import pytest
 
 from families.solid_shapes import BRACKET, ball, bolt, bracket, peg, ring, socket, tube
 from standoff.solids import Solid
+from standoff.solids.asked import Asked
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -155,7 +156,7 @@ def test_the_gradient_is_that_of_differences() -> None:
 
 
 def test_few_evaluations_leave_a_true_interval() -> None:
-    answer = spatial_distance(HOLE, PEG, None, (about_x(1e-5), (1e-6, 0, 0)), evaluations=5)
+    answer = spatial_distance(HOLE, PEG, None, (about_x(1e-5), (1e-6, 0, 0)), Asked(deadline=5))
     whole = spatial_distance(HOLE, PEG, None, (about_x(1e-5), (1e-6, 0, 0)))
     assert answer.status is Status.DEADLINE
     assert not answer.certified

@@ -18,6 +18,8 @@ from standoff.tracking.status import Status
 Array = NDArray[np.float64]
 
 
+PointPair = tuple[Array, Array]
+"""A point of A and one of B, world axes."""
 MOST_OPEN = 64
 """Open pairs that an answer lists."""
 
@@ -40,6 +42,9 @@ class NearestPair(NamedTuple):
         As those of a `Proximity`.
     pieces : (str, str)
         Of compounds the pieces that the features are of, by name; empty for single bodies.
+    patch : tuple of (point_a, point_b)
+        With ``patch=``: up to four pairs that span where the boundaries are hardly farther apart,
+        counterclockwise about the normal.
     """
 
     distance: float
@@ -52,6 +57,7 @@ class NearestPair(NamedTuple):
     parameters_a: tuple[float, ...]
     parameters_b: tuple[float, ...]
     pieces: tuple[str, str] = ("", "")
+    patch: tuple[PointPair, ...] = ()
 
 
 class Continuum(NamedTuple):

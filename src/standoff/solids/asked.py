@@ -6,6 +6,11 @@ from typing import NamedTuple
 
 DEADLINE = 2_000_000
 """Evaluations of points and bounds, at most: some seconds."""
+PATCH_ALONE = (
+    "patch={patch!r}: patches are those of local minima, of solids in space; give `minima` too, up "
+    "to which distance."
+)
+"""Why patches are refused."""
 
 
 class Asked(NamedTuple):
@@ -15,6 +20,7 @@ class Asked(NamedTuple):
     tolerance: float | None = None
     minima: float | None = None
     deadline: int = DEADLINE
+    patch: float | None = None
 
 
 DEFAULT = Asked()

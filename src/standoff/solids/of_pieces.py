@@ -216,6 +216,7 @@ def _turned_pair(pair: NearestPair) -> NearestPair:
         pair.parameters_b,
         pair.parameters_a,
         pair.pieces[::-1],
+        tuple((y, x) for x, y in pair.patch),
     )
 
 

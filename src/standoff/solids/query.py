@@ -5,15 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from standoff.checks.numbers import positive, whole_number
+from standoff.errors import StandoffError
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import DEADLINE, Asked
+from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
 from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.distance import spatial_distance
 
 
-def distance(
+def distance(  # noqa: PLR0913 - all but four are keywords with defaults
     a: Any,
     b: Any,
     pose_a: PoseLike,
@@ -23,6 +24,7 @@ def distance(
     tolerance: float | None = None,
     minima: float | None = None,
     deadline: int = DEADLINE,
+    patch: float | None = None,
 ) -> SolidProximity:
     """The proven distance of two solids at two poses: cold, global.
 
@@ -44,6 +46,9 @@ def distance(
         Most evaluations of points and of bounds, as ``counts.evaluations`` tells them: points of
         the boundaries, pairs of boxes, and boxes of potentials, each counted once. What is then
         open stays an interval, with the status DEADLINE.
+    patch : float, optional
+        Of each of `minima`, in space: up to four pairs of points that span the region around it in
+        which the boundaries are farther apart by no more than this, length.
 
     Returns
     -------
@@ -54,25 +59,19 @@ def distance(
     TypeError
         Neither a solid nor a body.
     ValueError
-        No pose, one out of the plane, or a number that is not positive.
+        No pose, one out of the plane, a number that is not positive, or `patch` alone.
     """
     asked = Asked(
         None if within is None else positive(within, "within"),
         None if tolerance is None else positive(tolerance, "tolerance"),
         None if minima is None else positive(minima, "minima"),
         whole_number(deadline, "deadline"),
+        None if patch is None else positive(patch, "patch"),
     )
+    if asked.patch is not None and (asked.minima is None or _planar(a) or _planar(b)):
+        raise StandoffError(PATCH_ALONE.format(patch=patch), "patch", patch)
     if not (_planar(a) or _planar(b)):
-        return spatial_distance(
-            a,
-            b,
-            pose_a,
-            pose_b,
-            evaluations=asked.deadline,
-            within=asked.within,
-            tolerance=asked.tolerance,
-            minima=asked.minima,
-        )
+        return spatial_distance(a, b, pose_a, pose_b, asked)
     return planar_distance(PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b"), pose_a, pose_b, asked)
 
 

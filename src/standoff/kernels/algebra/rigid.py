@@ -84,18 +84,30 @@ def exp_rotation(f):
 
 
 @kernel
-def log_rotation(R):
-    """Rotation vector of R, through its quaternion: sound at every angle up to pi."""
+def scaled_quaternion(R):
+    """A multiple of the quaternion (w, x, y, z) of R, by its greatest component."""
     t = R[0] + R[4] + R[8]
     if t > 0.0:
-        w = 1.0 + t
-        x, y, z = R[7] - R[5], R[2] - R[6], R[3] - R[1]
-    elif R[0] >= R[4] and R[0] >= R[8]:
-        w, x, y, z = R[7] - R[5], 1.0 + R[0] - R[4] - R[8], R[1] + R[3], R[2] + R[6]
-    elif R[4] >= R[8]:
-        w, x, y, z = R[2] - R[6], R[1] + R[3], 1.0 + R[4] - R[0] - R[8], R[5] + R[7]
-    else:
-        w, x, y, z = R[3] - R[1], R[2] + R[6], R[5] + R[7], 1.0 + R[8] - R[0] - R[4]
+        return (1.0 + t, R[7] - R[5], R[2] - R[6], R[3] - R[1])
+    if R[0] >= R[4] and R[0] >= R[8]:
+        return (R[7] - R[5], 1.0 + R[0] - R[4] - R[8], R[1] + R[3], R[2] + R[6])
+    if R[4] >= R[8]:
+        return (R[2] - R[6], R[1] + R[3], 1.0 + R[4] - R[0] - R[8], R[5] + R[7])
+    return (R[3] - R[1], R[2] + R[6], R[5] + R[7], 1.0 + R[8] - R[0] - R[4])
+
+
+@kernel
+def unit_quaternion(R):
+    """The quaternion (w, x, y, z) of R."""
+    w, x, y, z = scaled_quaternion(R)
+    s = 1.0 / sqrt(w * w + x * x + y * y + z * z)
+    return (s * w, s * x, s * y, s * z)
+
+
+@kernel
+def log_rotation(R):
+    """Rotation vector of R, through its quaternion: sound at every angle up to pi."""
+    w, x, y, z = scaled_quaternion(R)
     s = sqrt(x * x + y * y + z * z)
     if w < 0.0:
         w, x, y, z = -w, -x, -y, -z

@@ -7,9 +7,8 @@ from standoff.kernels.compiler.entry import BOOL, INT, INTS, READ, WRITE, WRITE_
 from standoff.kernels.pair.derivatives import write_gradient
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.local_side import on_one_side, tell_beside
-from standoff.kernels.solids.spatial_closing import along
 from standoff.kernels.solids.spatial_minimum import nearest
-from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid
+from standoff.kernels.solids.spatial_pieces import along, leaf_box, leaf_jet, on_solid
 from standoff.kernels.solids.spatial_search import search
 from standoff.kernels.solids.spatial_self import (
     FOUND_REALS,

@@ -4,6 +4,7 @@ from math import inf
 
 from numba import types
 
+from standoff.kernels.algebra.rigid import unit_quaternion
 from standoff.kernels.algebra.vectors import norm
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INTS, READ, READ_ROWS, ROWS, WRITE, WRITE_INTS
@@ -18,6 +19,7 @@ from standoff.kernels.solids.front_frame import (
     frame,
     is_single,
     motion_between,
+    rounding_of,
 )
 from standoff.kernels.solids.front_rows import (
     FRAME,
@@ -29,10 +31,12 @@ from standoff.kernels.solids.front_rows import (
 )
 from standoff.kernels.solids.spatial_pieces import leaf_jet
 from standoff.kernels.solids.spatial_progress import (
+    ABOVE,
     AT,
     LEAF_A,
     LEAF_B,
     LEAST,
+    LOST,
     MEETING,
     MET,
     N_MINIMA,
@@ -51,7 +55,7 @@ ENDED, DISTANCE, BOUND, MOTION, POINT_A, POINT_B, LEAVES, PARAMETERS = 0, 1, 2, 
 ROWS_TOLD, TAKEN, ANEW, SURE = 16, 17, 18, 19
 TOLD_REALS = 20
 N_COUNTS = 5
-# How it ended: proven and at one place; several places or a continuum, to be looked for; not
+# How it ended: proven and at one place; several places, or what may be, to be looked for; not
 # proven; and met, or not known to be apart, so that a query from nothing is to decide.
 SINGLE, SEVERAL, INTERVAL, TO_ASK = 0.0, 1.0, 2.0, 3.0
 
@@ -79,17 +83,20 @@ def how_ended(a, b, best, minima, low):
         return TO_ASK
     if low < best[LEAST] - best[TOLERANCE]:
         return INTERVAL
-    return SINGLE if is_single(a, b, best, minima) else SEVERAL
+    single = best[ABOVE] == 0.0 and is_single(a, b, best, minima)
+    return SINGLE if single else SEVERAL
 
 
 @kernel
 def ask(best, asked, away):
-    """What is asked of a frame, at how far the solids' frames are from each other: the tolerance,
-    and the share of the sizes and the distance that is for rounding, stand in `asked`."""
+    """What is asked of a frame, at how far the solids' frames are from each other. In `asked` stand
+    the tolerance, the share of the sizes and the distance that is for rounding, and up to which
+    distance local minima are kept; 0: only the nearest pairs."""
     best[ROUNDING] = asked[1] * (best[SIZE] + away)
     best[TOLERANCE] = max(asked[0], 4.0 * best[ROUNDING])
-    best[MEETING] = best[TOLERANCE]
-    best[LEAST], best[OPEN], best[MET], best[N_MINIMA], best[N_OPEN] = inf, inf, 0.0, 0.0, 0.0
+    best[MEETING], best[ABOVE] = best[TOLERANCE], asked[2]
+    best[LEAST], best[OPEN], best[MET] = inf, inf, 0.0
+    best[N_MINIMA], best[N_OPEN], best[LOST] = 0.0, 0.0, 0.0
 
 
 # B's pose in A's frame in the frame before, with the least distance and the bound there; its poses
@@ -122,12 +129,16 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         store[FRAME] += 1.0
         ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
         afar = far_side(a, now, radius)
-        travel = Travel(store[GONE], ahead, radius, 1.0 / radius, afar, sure)
+        turn, spare = unit_quaternion(now.pose.R), rounding_of(now, best[SIZE])
+        gone, turning = store[GONE], 1.0 / radius
+        travel = Travel(gone, ahead, radius, turning, afar, sure, now.pose, turn, spare, asked[2])
         ask(best, asked, norm(now.pose.p))
         for k in range(N_COUNTS):
             c[k] = 0
         begin(a, now, best, minima)
-        follow(a, now, kept, best, minima, c)
+        if best[ABOVE] > 0.0:  # that pair is none of the minima now
+            best[N_MINIMA] = 0.0
+        follow(a, now, kept, travel, best, minima, c)
         anew = frame(a, now, kept, travel, best, minima, c)
         out = pointer(told, TOLD_REALS * i)
         tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)

@@ -7,7 +7,9 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack, small
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.front_look import descend, settle_row, tied
+from standoff.kernels.solids.front_close import tied
+from standoff.kernels.solids.front_look import descend, settle_row
+from standoff.kernels.solids.front_minima import find_minima
 from standoff.kernels.solids.front_rows import (
     MAKING,
     N_MADE,
@@ -16,14 +18,19 @@ from standoff.kernels.solids.front_rows import (
     ROW_B,
     ROW_REALS,
     add_row,
+    bound_key,
     box_of_row,
+    is_due,
     is_passed_over,
+    is_shut,
 )
 from standoff.kernels.solids.spatial_boxes import node_centre, node_reach
 from standoff.kernels.solids.spatial_minimum import fill_system, solved
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
 from standoff.kernels.solids.spatial_progress import (
+    ABOVE,
     AT,
+    BOUND,
     LEAF_A,
     LEAF_B,
     LEAST,
@@ -33,6 +40,7 @@ from standoff.kernels.solids.spatial_progress import (
     N_OPEN,
     NOWHERE,
     SIZE,
+    farthest,
     keep_found,
 )
 from standoff.kernels.solids.spatial_tolerances import (
@@ -68,6 +76,12 @@ def motion_between(before, now, size):
 
 
 @kernel
+def rounding_of(now, size):
+    """Of a shift from any pose to one like this, length."""
+    return 2.0 * MOTION_SPARE * (size + norm(now.pose.p))
+
+
+@kernel
 def far_side(a, b, radius):
     """How much more than B's motion a point of A moves as B sees it, at most."""
     length = norm(sub(node_centre(b, 0), node_centre(a, 0))) + node_reach(a, 0)
@@ -86,11 +100,14 @@ def begin(a, b, best, minima):
 
 
 @kernel
-def follow(a, b, front, best, minima, counts):
+def follow(a, b, front, travel, best, minima, counts):
     """Newton's method in the rows that hold the witness points."""
     q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     leaf_a, leaf_b = best[LEAF_A], best[LEAF_B]
+    most = best[LEAST] + travel.gone
     for k in range(int(front.store[N_ROWS])):
+        if bound_key(front, k) > most:
+            continue
         o = ROW_REALS * k
         if front.rows[o + ROW_A] == leaf_a and front.rows[o + ROW_B] == leaf_b:
             box_a, box_b = box_of_row(front, k, 0), box_of_row(front, k, 1)
@@ -123,9 +140,16 @@ def frame(a, b, front, travel, best, minima, counts):
     anew = store[N_ROWS] == 0.0 or has_grown(front)
     if anew:
         make_front(front)
+    above = best[ABOVE]
+    if above > 0.0:
+        find_minima(a, b, front, travel, best, minima, counts)
+        best[ABOVE] = 0.0  # what is to be proven does not depend on it
     k = 0
     while k < int(store[N_ROWS]) and best[MET] == 0.0:
-        if not settle_row(a, b, front, k, travel, best, minima, counts):
+        # most rows rest, by their keys alone: nothing more is asked of any
+        if not is_due(front, k, tied(best), travel) or not settle_row(
+            a, b, front, k, travel, best, minima, counts
+        ):
             k += 1
     if store[MAKING] > 0.0 and best[N_OPEN] == 0.0:
         store[N_MADE], store[MAKING] = store[N_ROWS], 0.0
@@ -133,7 +157,28 @@ def frame(a, b, front, travel, best, minima, counts):
     for k in range(int(store[N_ROWS])):
         if best[MET] == 0.0 and is_passed_over(front, k, tied(best), travel):
             descend(a, b, front, k, best, minima, counts)
+    if above > 0.0:
+        best[ABOVE] = above
+        bound_found(front, travel, best, minima)
     return anew
+
+
+@kernel
+def bound_found(front, travel, best, minima):
+    """Write down what is proven of each minimum, of all parts of its leaves."""
+    n = int(best[N_MINIMA])
+    for i in range(n):
+        minima[MINIMUM_REALS * i + BOUND] = minima[MINIMUM_REALS * i]
+    for k in range(int(front.store[N_ROWS])):
+        low = bound_key(front, k) - travel.gone
+        if low >= farthest(best) or is_shut(front, k, travel):
+            continue
+        o = ROW_REALS * k
+        for i in range(n):
+            m = MINIMUM_REALS * i
+            same = minima[m + 1] == front.rows[o + ROW_A]
+            if same and minima[m + 2] == front.rows[o + ROW_B]:
+                minima[m + BOUND] = min(minima[m + BOUND], max(low, 0.0))
 
 
 @small

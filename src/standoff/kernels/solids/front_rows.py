@@ -15,10 +15,21 @@ from standoff.kernels.solids import spatial_layout as S
 
 # What a row holds: leaves (-1 - node where it is a node), both boxes, where Newton's method came
 # to last, at which distance, and in which frame; by which way it was closed last.
-ROW_REALS = 17
+ROW_REALS = 37
 ROW_A, ROW_B, ROW_BOXES, ROW_AT, ROW_DISTANCE, ROW_FRAME, ROW_WAY = 0, 1, 2, 10, 14, 15, 16
+# And how B was when a row was last looked at, so that the row's own motion since can be told: the
+# bound proven then, the direction it was proven along (3), how much the slope may differ from that,
+# and up to which shift; the length it was shut for, and up to which goal; the centre of a ball
+# round B's piece in B's frame and in A's (3 each), its radius, and B's turn (4).
+ROW_LOW, ROW_SLOPE, ROW_SPREAD, ROW_ROOM, ROW_FREE, ROW_GOAL = 17, 18, 21, 22, 23, 24
+ROW_CENTRE, ROW_WAS, ROW_RADIUS, ROW_TURN = 25, 28, 31, 32
+# Farthest that a point of A's piece is from that centre, for what is shut by planes.
+ROW_FAR = 36
 # Of a row: not yet known whether it is on both faces; not closed by any potential.
 UNSEEN, NO_WAY = -2.0, -1.0
+# What became of a row: it stays as it is, its parts are in its place, or it is gone; or more is to
+# be done.
+KEPT, CUT, GONE_ROW, OPEN_ROW = 0, 1, 2, 3
 # Of each row two numbers: bound and shut, both plus the motion when they were proven.
 KEY_REALS = 2
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
@@ -48,6 +59,10 @@ class Travel(NamedTuple):
     turn : radians by which B turns at most, per length of the motion.
     afar : how much more than the motion a point of A moves as B sees it.
     sure : are the solids known to be apart, as they were, and have not moved so far?
+    pose : of B in A's frame.
+    quaternion : of B's turn.
+    spare : for the rounding of a shift, length.
+    above : local minima are kept up to this distance, length; a plane's face shuts none out.
     """
 
     gone: Any
@@ -56,6 +71,10 @@ class Travel(NamedTuple):
     turn: Any
     afar: Any
     sure: Any
+    pose: Any
+    quaternion: Any
+    spare: Any
+    above: Any
 
 
 @kernel
@@ -83,6 +102,7 @@ def put_row(front, k, i, j, box_a, box_b, bound):
     r[b], r[b + 1], r[b + 2], r[b + 3] = box_a.u0, box_a.u1, box_a.v0, box_a.v1
     r[b + 4], r[b + 5], r[b + 6], r[b + 7] = box_b.u0, box_b.u1, box_b.v0, box_b.v1
     r[o + ROW_FRAME], r[o + ROW_WAY] = -1.0, UNSEEN
+    r[o + ROW_LOW], r[o + ROW_FREE] = -inf, -inf
     front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1] = bound, -inf
 
 
@@ -126,6 +146,12 @@ def is_due(front, k, goal, travel):
 
 
 @kernel
+def is_shut(front, k, travel):
+    """Is a row known to hold no nearest pair now?"""
+    return front.keys[KEY_REALS * k + 1] >= travel.gone
+
+
+@kernel
 def open_up(front, k):
     """What a row was shut by no longer counts."""
     front.keys[KEY_REALS * k + 1] = -inf
@@ -144,8 +170,8 @@ def keep_shut(front, k, free, travel):
 @kernel
 def is_passed_over(front, k, most, travel):
     """Was a pair of leaves that may hold points as near as `most` left alone in this frame?"""
-    o = ROW_REALS * k
-    if front.rows[o + ROW_A] < 0.0 or front.rows[o + ROW_FRAME] == front.store[FRAME]:
-        return False
     bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
-    return bound < most + travel.gone and shut < travel.gone
+    if bound >= most + travel.gone or shut >= travel.gone:
+        return False
+    o = ROW_REALS * k
+    return front.rows[o + ROW_A] >= 0.0 and front.rows[o + ROW_FRAME] != front.store[FRAME]

@@ -61,10 +61,8 @@ def below_near(phi, most, near, pair, best, work, counts):
             continue
         q, distance = nearest_of(pa, pb, counts)
         if distance >= near:
-            if (
-                by_witness(near, pa, pb, (pa.leaf, pb.leaf, q), ALL_WAYS, FEW_BOXES, best, counts)
-                >= 0
-            ):
+            at = (pa.leaf, pb.leaf, q)
+            if by_witness(near, pa, pb, at, ALL_WAYS, FEW_BOXES, best, counts)[0] >= 0:
                 continue
         elif on_solid(pa.side, pa.leaf, q[0], q[1]):
             x = leaf_jet(pa.side, pa.leaf, q[0], q[1])[0]

@@ -9,7 +9,7 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.coaxial import NO_POTENTIAL
 from standoff.kernels.solids.spatial_likeness import moved_line
-from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, leaf_jet, leaf_reals
+from standoff.kernels.solids.spatial_pieces import ZERO, along, leaf_ints, leaf_jet, leaf_reals
 from standoff.kernels.solids.spatial_progress import middle
 from standoff.kernels.solids.spatial_tolerances import (
     NEAREST_AXIS,
@@ -85,11 +85,7 @@ def least_along(part, e, point):
     q = middle(box)
     jet = leaf_jet(side, leaf, q[0], q[1])
     hu, hv = 0.5 * (box.u1 - box.u0), 0.5 * (box.v1 - box.v0)
-    o, m = leaf_reals(side, leaf), side.numbers
-    bend = m[o + S.SECOND] * hu * hu + m[o + S.SECOND + 2] * hv * hv
-    bend += 2.0 * m[o + S.SECOND + 1] * hu * hv
-    spread = abs(dot(e, jet[1])) * hu + abs(dot(e, jet[2])) * hv + 0.5 * bend
-    return dot(e, sub(jet[0], point)) - spread
+    return dot(e, sub(jet[0], point)) - along(side, leaf, jet, e, (hu, hv))
 
 
 @kernel

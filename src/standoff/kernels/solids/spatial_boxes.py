@@ -49,23 +49,33 @@ def cone_of(side, node):
 
 @kernel
 def gap_of(a, i, b, j):
-    """A lower bound of the distance of two nodes' boxes: the widest gap along their axes, crosses
-    of these, and the line between their centres. Below 0 where none separates them."""
+    """A lower bound of the distance of two nodes' boxes; below 0 where nothing separates them."""
+    return gap_along(a, i, b, j)[0]
+
+
+@kernel
+def gap_along(a, i, b, j):
+    """(gap, n): the widest gap of two nodes' boxes along a direction, from A to B, of those that
+    are tried: their axes, the line between their centres, and that between their nearest points."""
     axes_a = (node_axis(a, i, 0), node_axis(a, i, 1), node_axis(a, i, 2))
     axes_b = (node_axis(b, j, 0), node_axis(b, j, 1), node_axis(b, j, 2))
     ha, hb = node_reals(a, i) + S.HALF, node_reals(b, j) + S.HALF
     ma, mb = a.numbers, b.numbers
     delta = sub(node_centre(b, j), node_centre(a, i))
     length = norm(delta)
-    best = -inf
+    best, way = -inf, (0.0, 0.0, 0.0)
     if length > 0.0:
-        n = scale(1.0 / length, delta)
-        best = length - half_along(ma, ha, axes_a, n) - half_along(mb, hb, axes_b, n)
+        way = scale(1.0 / length, delta)
+        best = length - half_along(ma, ha, axes_a, way) - half_along(mb, hb, axes_b, way)
     for k in range(3):
         n = axes_a[k]
-        best = max(best, abs(dot(delta, n)) - ma[ha + k] - half_along(mb, hb, axes_b, n))
+        gap = abs(dot(delta, n)) - ma[ha + k] - half_along(mb, hb, axes_b, n)
+        if gap > best:
+            best, way = gap, n
         n = axes_b[k]
-        best = max(best, abs(dot(delta, n)) - mb[hb + k] - half_along(ma, ha, axes_a, n))
+        gap = abs(dot(delta, n)) - mb[hb + k] - half_along(ma, ha, axes_a, n)
+        if gap > best:
+            best, way = gap, n
     # the nearest points of the boxes, found roughly, give a direction for corners
     x, y = (0.0, 0.0, 0.0), delta
     for _ in range(3):
@@ -75,10 +85,10 @@ def gap_of(a, i, b, j):
     length = norm(away)
     if length > 0.0:
         n = scale(1.0 / length, away)
-        best = max(
-            best, dot(delta, n) - half_along(ma, ha, axes_a, n) - half_along(mb, hb, axes_b, n)
-        )
-    return best
+        gap = dot(delta, n) - half_along(ma, ha, axes_a, n) - half_along(mb, hb, axes_b, n)
+        if gap > best:
+            best, way = gap, n
+    return best, scale(-1.0, way) if dot(way, delta) < 0.0 else way
 
 
 @kernel

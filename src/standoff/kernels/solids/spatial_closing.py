@@ -5,7 +5,7 @@ from math import inf
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.coaxial import coaxial_between, common_axis
+from standoff.kernels.solids.coaxial import NO_POTENTIAL, coaxial_between, common_axis
 from standoff.kernels.solids.screw import common_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
@@ -18,6 +18,7 @@ from standoff.kernels.solids.spatial_minimum import (
 )
 from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
+    along,
     leaf_box,
     leaf_ints,
     leaf_jet,
@@ -65,8 +66,6 @@ FEW_BOXES, MOST_BOXES = 20, 400
 EASY_CUTS = 16
 # The same, of a potential that does for whole pieces of a thread.
 SCREW_BOXES = 150
-# The same, where one potential did before.
-AGAIN_BOXES = 8
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
 SCREWED = 7
 ALL_WAYS = (0, SCREWED)
@@ -97,15 +96,16 @@ def by_own_surface(goal, a, b, q, limit, counts):
 
 @shared
 def by_witness(goal, a, b, at, ways, limit, best, counts):
-    """Which potential through a pair of points (leaves and parameters `at`) proves it: a plane (0),
-    one of three margins about a common axis (1, 3, 5) or a torus (2, 4, 6), or along a screw (7,
-    which is tried first); -1: none. Of `ways` all from the first to the last are tried."""
+    """(way, potential): which potential through a pair of points (leaves and parameters `at`)
+    proves it: a plane (0), one of three margins about a common axis (1, 3, 5) or a torus (2, 4, 6),
+    or along a screw (7, which is tried first); -1: none. Of `ways` all from the first to the last
+    are tried."""
     wa, wb, q = at
     ja, jb = leaf_jet(a.side, wa, q[0], q[1]), leaf_jet(b.side, wb, q[2], q[3])
     size = best[SIZE]
     n = direction(a.side, wa, ja, b.side, wb, jb, SURE_NORMAL * size)
     if norm(n) < 0.5:
-        return -1
+        return -1, NO_POTENTIAL
     x, y = ja[0], jb[0]
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
@@ -115,11 +115,12 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
         if screw[0]:
             known, phi = screw_between(a, b, x, y, n, screw)
             if known and by_one(phi, goal, a, b, (here, q, x, y, SCREW_BOXES), counts):
-                return SCREWED
-    if first == 0 and by_one(plane_between(x, y, n), goal, a, b, place, counts):
-        return 0
+                return SCREWED, phi
+    phi = plane_between(x, y, n)
+    if first == 0 and by_one(phi, goal, a, b, place, counts):
+        return 0, phi
     if last == 0:
-        return -1
+        return -1, NO_POTENTIAL
     span = reach_of(a.side, a.leaf, a.box.u1 - a.box.u0, a.box.v1 - a.box.v0)
     span = max(span, reach_of(b.side, b.leaf, b.box.u1 - b.box.u0, b.box.v1 - b.box.v0))
     span = max(min(span, size), LEAST_SPAN * size)
@@ -134,12 +135,12 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
         if way % 2 == 0:
             phi = torus_between(x, y, n, frame, sa, sb, margin)
             if by_one(phi, goal, a, b, place, counts):
-                return way
+                return way, phi
         elif turned:
             known, phi = coaxial_between(x, y, n, frame, (sa, sb), (point, axis), margin, size)
             if known and by_one(phi, goal, a, b, place, counts):
-                return way
-    return -1
+                return way, phi
+    return -1, NO_POTENTIAL
 
 
 @kernel
@@ -187,39 +188,33 @@ def slanted(part, jet, delta, length, reach, turn):
 @kernel
 def no_pair(a, b, goal, rounding, turn):
     """(lower bound of the distance of two parts, length that B may move before they may hold a
-    nearest pair), by their tangent planes' bounds; 0 or less: they may now, and are nearer than
-    `goal`. `turn`: of B as it moves, radians per length."""
+    nearest pair, their middle points), by their tangent planes' bounds; 0 or less: they may now,
+    and are nearer than `goal`. `turn`: of B as it moves, radians per length.
+
+    A bound above 0 is one along the line between the middle points."""
     qa, qb = middle(a.box), middle(b.box)
     ja, jb = leaf_jet(a.side, a.leaf, qa[0], qa[1]), leaf_jet(b.side, b.leaf, qb[0], qb[1])
+    middles = ja[0], jb[0]
     delta = sub(jb[0], ja[0])
     length = norm(delta)
     ha = (0.5 * (a.box.u1 - a.box.u0), 0.5 * (a.box.v1 - a.box.v0))
     hb = (0.5 * (b.box.u1 - b.box.u0), 0.5 * (b.box.v1 - b.box.v0))
     reach = reach_of(a.side, a.leaf, ha[0], ha[1]) + reach_of(b.side, b.leaf, hb[0], hb[1])
     if length == 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, middles
     n = scale(1.0 / length, delta)
     low = max(length - reach, 0.0)
     flat = length - along(a.side, a.leaf, ja, n, ha) - along(b.side, b.leaf, jb, n, hb)
     low = max(low, flat) - rounding
     if low >= goal:
-        return low, inf
+        return low, inf, middles
     apart = length - reach - rounding
     if apart > 0.0:
         free = slanted(a, ja, delta, length, reach, 0.0)
         free = max(free, slanted(b, jb, delta, length, reach, turn))
         if free > 0.0:
-            return low, min(free, apart)
-    return max(low, 0.0), 0.0
-
-
-@kernel
-def along(side, leaf, jet, n, h):
-    """How far a box reaches from its middle along n, at most."""
-    o, m = leaf_reals(side, leaf), side.numbers
-    second = m[o + S.SECOND] * h[0] * h[0] + m[o + S.SECOND + 2] * h[1] * h[1]
-    second += 2.0 * m[o + S.SECOND + 1] * h[0] * h[1]
-    return abs(dot(n, jet[1])) * h[0] + abs(dot(n, jet[2])) * h[1] + 0.5 * second
+            return low, min(free, apart), middles
+    return max(low, 0.0), 0.0, middles
 
 
 @kernel
@@ -264,12 +259,12 @@ def closed_by_any(a, b, best, minima, hard, counts):
     if best[ABOVE] > best[LEAST]:
         goal, row = local_goal(a, b, q, distance, best, minima)
     pair = (a, b, q, distance)
-    closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts) >= 0
+    closed = closed_to(goal, row, pair, FEW_BOXES, best, minima, counts)[0] >= 0
     # a nearer place off a trim is cut away sooner than bounded
     if not closed and distance >= goal:
-        closed = hard and closed_to(goal, row, pair, MOST_BOXES, best, minima, counts) >= 0
+        closed = hard and closed_to(goal, row, pair, MOST_BOXES, best, minima, counts)[0] >= 0
     elif not closed:
-        closed = closed_off_trim(goal, 0.0, a, b, best, counts) >= goal
+        closed = closed_off_trim(goal, 0.0, a, b, best, counts)[0] >= goal
     if closed:
         best[OF_LEAVES] = min(best[OF_LEAVES], goal - best[ROUNDING])
     return closed
@@ -283,37 +278,38 @@ def aimed(goal, distance, ahead):
 
 @kernel
 def closed_off_trim(goal, ahead, a, b, best, counts):
-    """A bound that potentials prove of two parts that are nearer off their trims, through the
-    nearest points on the trimming curves of one: from `goal` on, up to `ahead` more; -inf: none."""
+    """(bound, potential) of two parts that are nearer off their trims, through the nearest points
+    on the trimming curves of one: from `goal` on, up to `ahead` more; -inf: none."""
     q, distance = nearest_on_trim(a, b, counts)
     aim = aimed(goal, distance, ahead)
-    if (
-        goal <= distance < inf
-        and by_witness(aim, a, b, (a.leaf, b.leaf, q), ALL_WAYS, FEW_BOXES, best, counts) >= 0
-    ):
-        return aim
+    if goal <= distance < inf:
+        at = (a.leaf, b.leaf, q)
+        way, phi = by_witness(aim, a, b, at, ALL_WAYS, FEW_BOXES, best, counts)
+        if way >= 0:
+            return aim, phi
     q, distance = nearest_on_trim(b, a, counts)
     if not goal <= distance < inf:
-        return -inf
+        return -inf, NO_POTENTIAL
     aim = aimed(goal, distance, ahead)
     at = (a.leaf, b.leaf, (q[2], q[3], q[0], q[1]))
-    return aim if by_witness(aim, a, b, at, ALL_WAYS, FEW_BOXES, best, counts) >= 0 else -inf
+    way, phi = by_witness(aim, a, b, at, ALL_WAYS, FEW_BOXES, best, counts)
+    return aim if way >= 0 else -inf, phi
 
 
 @kernel
 def closed_to(goal, row, pair, limit, best, minima, counts):
-    """By which way potentials prove a goal of two parts: of the surfaces themselves (`OWN_A`,
+    """(way, potential) by which a goal is proven of two parts: of the surfaces themselves (`OWN_A`,
     `OWN_B`), through the nearest points found in the pair (from `HERE` on), or through those that
     the goal comes from (from `THERE` on); -1: by none."""
     a, b, q, distance = pair
     if by_own_surface(goal, a, b, (q[2], q[3]), limit, counts):
-        return OWN_A
+        return OWN_A, natural(a.side, a.leaf)[1]
     if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
-        return OWN_B
+        return OWN_B, natural(b.side, b.leaf)[1]
     if distance >= goal:
-        way = by_witness(goal, a, b, (a.leaf, b.leaf, q), ALL_WAYS, limit, best, counts)
+        way, phi = by_witness(goal, a, b, (a.leaf, b.leaf, q), ALL_WAYS, limit, best, counts)
         if way >= 0:
-            return HERE + way
+            return HERE + way, phi
     wa, wb = int(best[LEAF_A]), int(best[LEAF_B])
     at = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     if row >= 0:
@@ -321,25 +317,29 @@ def closed_to(goal, row, pair, limit, best, minima, counts):
         wa, wb = int(minima[o + 1]), int(minima[o + 2])
         at = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     if wa == a.leaf and wb == b.leaf and distance >= goal:
-        return -1
-    way = by_witness(goal, a, b, (wa, wb, at), ALL_WAYS, limit, best, counts)
-    return THERE + way if way >= 0 else -1
+        return -1, NO_POTENTIAL
+    way, phi = by_witness(goal, a, b, (wa, wb, at), ALL_WAYS, limit, best, counts)
+    return THERE + way if way >= 0 else -1, phi
 
 
 @kernel
-def closed_again(way, goal, pair, best, counts):
-    """Does the way that `closed_to` told of a pair, at another time, prove a goal of it?"""
+def closed_again(way, goal, pair, limit, best, counts):
+    """(whether the way that `closed_to` told of a pair at another time proves a goal of it,
+    potential)."""
     a, b, q, _ = pair
     if way == OWN_A:
-        return by_own_surface(goal, a, b, (q[2], q[3]), AGAIN_BOXES, counts)
+        closed = by_own_surface(goal, a, b, (q[2], q[3]), limit, counts)
+        return closed, natural(a.side, a.leaf)[1]
     if way == OWN_B:
-        return by_own_surface(goal, b, a, (q[0], q[1]), AGAIN_BOXES, counts)
+        closed = by_own_surface(goal, b, a, (q[0], q[1]), limit, counts)
+        return closed, natural(b.side, b.leaf)[1]
     if way < THERE:
         at, one = (a.leaf, b.leaf, q), way - HERE
     else:
         q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
         at, one = (int(best[LEAF_A]), int(best[LEAF_B]), q), way - THERE
-    return by_witness(goal, a, b, at, (one, one), AGAIN_BOXES, best, counts) >= 0
+    told, phi = by_witness(goal, a, b, at, (one, one), limit, best, counts)
+    return told >= 0, phi
 
 
 @kernel
@@ -380,7 +380,7 @@ def close_leaves(a, b, pair, best, minima, work, counts):
         o = PAIR_REALS * count
         pa = S.Part(a, leaf_a, S.Box(work[o], work[o + 1], work[o + 2], work[o + 3]))
         pb = S.Part(b, leaf_b, S.Box(work[o + 4], work[o + 5], work[o + 6], work[o + 7]))
-        low, free = no_pair(pa, pb, goal_of(best), best[ROUNDING], 0.0)
+        low, free, _ = no_pair(pa, pb, goal_of(best), best[ROUNDING], 0.0)
         low = max(low, work[o + 8])
         if free > 0.0:
             continue

@@ -2,7 +2,7 @@
 
 from math import inf
 
-from standoff.kernels.algebra.vectors import cross, norm, rotate, scale
+from standoff.kernels.algebra.vectors import cross, dot, norm, rotate, scale
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_jet,
@@ -191,3 +191,13 @@ def reach_of(side, leaf, du, dv):
     """A bound on the distance of a leaf's points whose parameters differ by (du, dv)."""
     o = leaf_reals(side, leaf) + S.FIRST
     return side.numbers[o] * du + side.numbers[o + 1] * dv
+
+
+@kernel
+def along(side, leaf, jet, n, h):
+    """How far a leaf reaches along n from a point with this jet, over half widths h of its
+    parameters, at most."""
+    o, m = leaf_reals(side, leaf), side.numbers
+    second = m[o + S.SECOND] * h[0] * h[0] + m[o + S.SECOND + 2] * h[1] * h[1]
+    second += 2.0 * m[o + S.SECOND + 1] * h[0] * h[1]
+    return abs(dot(n, jet[1])) * h[0] + abs(dot(n, jet[2])) * h[1] + 0.5 * second

@@ -142,7 +142,7 @@ def left_out(a, b, goal, most, best, counts):
 def visit(a, b, key, best, minima, room, left, counts):
     """Look for nearer points in a pair of leaves, and list it; how many are listed."""
     pairs, most, _ = room
-    low, free = no_pair(a, b, farthest(best), best[ROUNDING], 0.0)
+    low, free, _ = no_pair(a, b, farthest(best), best[ROUNDING], 0.0)
     if free > 0.0 or left_out(a, b, farthest(best), MOST_VISITED, best, counts):
         return left
     q, distance = nearest_of(a, b, counts)

@@ -283,7 +283,7 @@ def state_by_points(a, b, goal, joint, best, counts, out):
         return MET
     a, b = facing(a, b), facing(b, a)
     at = (a.leaf, b.leaf, q)
-    if distance >= goal and by_witness(goal, a, b, at, ALL_WAYS, FEW_BOXES, best, counts) >= 0:
+    if distance >= goal and by_witness(goal, a, b, at, ALL_WAYS, FEW_BOXES, best, counts)[0] >= 0:
         return APART
     return OPEN
 

@@ -54,7 +54,7 @@ def planar_distance(
     first: Shape, second: Shape, pose_a: PoseLike, pose_b: PoseLike, asked: Asked = DEFAULT
 ) -> SolidProximity:
     """See ``so.solids.distance``."""
-    within, tolerance, minima, deadline = asked
+    within, tolerance, minima, deadline, _ = asked
     flat_a, flat_b = flat_pose(pose_a), flat_pose(pose_b)
     check_in_plane(flat_a, flat_b)
     apart = float(np.linalg.norm(flat_b[9:] - flat_a[9:]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
@@ -18,9 +19,10 @@ from standoff.solids.answer import (
     NearestPair,
     OpenPair,
     Overlap,
+    PointPair,
     SolidProximity,
 )
-from standoff.solids.asked import DEADLINE
+from standoff.solids.asked import DEFAULT, Asked
 from standoff.solids.parting import parted
 from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.left_open import around, open_pairs
@@ -29,6 +31,7 @@ from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.overlap import ball_beside, common_ball
 from standoff.solids.spatial.pair import Place, PlacedPair, references_of
+from standoff.solids.spatial.patches import patches_of
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
@@ -59,18 +62,11 @@ class Told(NamedTuple):
     inside: Inside = ""
     open: tuple[OpenPair, ...] = ()
     n_open: int = 0
+    patches: Sequence[tuple[PointPair, ...]] = ()
 
 
 def spatial_distance(
-    a: Any,
-    b: Any,
-    pose_a: Any = None,
-    pose_b: Any = None,
-    *,
-    evaluations: int = DEADLINE,
-    within: float | None = None,
-    tolerance: float | None = None,
-    minima: float | None = None,
+    a: Any, b: Any, pose_a: Any = None, pose_b: Any = None, asked: Asked = DEFAULT
 ) -> SolidProximity:
     """The proven distance of two solids at poses.
 
@@ -79,14 +75,9 @@ def spatial_distance(
     a, b : Solid, Boundary or Body
     pose_a, pose_b : poses in the world
         The identity by default.
-    evaluations : int
-        Of points and bounds, at most: what is then open stays an interval.
-    within : float, optional
-        Horizon, length: of solids farther apart only that is proven, with the status FAR.
-    tolerance : float, optional
-        To what the distance is proven, length; 1e-10 of both sizes together by default.
-    minima : float, optional
-        All local minima of the distance below this one are kept, length.
+    asked : Asked, optional
+        The options of ``so.solids.distance``. To 1e-10 of both sizes together it is proven by
+        default.
 
     Returns
     -------
@@ -97,6 +88,7 @@ def spatial_distance(
     StandoffError
         Something that is no solid, or no pose.
     """
+    within, tolerance, minima, deadline, patch = asked
     placed = [Pose.identity() if pose is None else Pose.of(pose) for pose in (pose_a, pose_b)]
     pair = PlacedPair(as_model(a), as_model(b), *placed)
     inside = inside_of(pair)
@@ -104,7 +96,7 @@ def spatial_distance(
     proof = pair.provable(PROOF_TOLERANCE * pair.size if tolerance is None else tolerance)
     # two tolerances more, so that what lies beyond is proven to
     horizon = np.inf if within is None else within + 2.0 * proof
-    sought = Sought(proof, evaluations, horizon, minima or 0.0, listed=MOST_OPEN)
+    sought = Sought(proof, deadline, horizon, *reach_of_minima(minima, patch))
     found = pair.least(senses, sought)
     if found.met:
         return _meeting(pair, found, sought, senses)
@@ -116,6 +108,12 @@ def spatial_distance(
             "may be wrong; report the pair with its poses."
         )
     return told_apart(pair, found, senses, inside, sought)
+
+
+def reach_of_minima(minima: float | None, patch: float | None) -> tuple[float, bool, int, float]:
+    """Of a search for local minima and their patches: up to where, and the rest of a `Sought`."""
+    wider = patch or 0.0
+    return (minima + wider if minima else 0.0), True, MOST_OPEN, wider
 
 
 def inside_of(pair: PlacedPair) -> Inside:
@@ -177,6 +175,11 @@ def told_apart(
     sought: Sought,
 ) -> SolidProximity:
     places = _places(pair, found, senses, sought.above)
+    patches: list[tuple[PointPair, ...]] = []
+    if sought.patch > 0.0:
+        least = sought.above - sought.patch
+        places = [each for k, each in enumerate(places) if k == 0 or each.distance <= least]
+        patches = patches_of(pair, places, found, senses, sought.patch)
     most = found.upper + found.tolerance
     near = [place for place in places if place.distance <= most]
     ties = near
@@ -200,7 +203,7 @@ def told_apart(
     if not proven and found.lower <= 0.0:
         smoothness = UNDEFINED
     left, n_left = ((), 0) if proven else open_pairs(pair, found)
-    told = Told(status, smoothness, continuum, None, inside, left, n_left)
+    told = Told(status, smoothness, continuum, None, inside, left, n_left, patches)
     return answer_of(pair, found, places, told)
 
 
@@ -249,7 +252,9 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     places = near
     if sought.above > 0.0:
         others = _places(pair, pair.least(senses, sought), senses, sought.above)
-        places = near + [each for each in others if each.distance > near[-1].distance]
+        reach = sought.above - sought.patch
+        beyond = near[-1].distance
+        places = near + [each for each in others if beyond < each.distance <= reach]
     met = replace(found, lower=-way)
     if way < np.inf:
         told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
@@ -293,6 +298,9 @@ def answer_of(pair: PlacedPair, found: Found, places: list[Place], told: Told) -
         distance = upper = -2.0 * told.overlap.radius
         lower = -np.inf
     minima = tuple(pair.nearest_pair(p, lower) for p in places)
+    if told.patches:
+        named = zip(minima, told.patches, strict=True)
+        minima = tuple(each._replace(patch=patch) for each, patch in named)
     first = minima[0] if minima else UNSEEN
     if not minima:
         distance = upper = np.inf

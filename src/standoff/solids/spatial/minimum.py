@@ -36,6 +36,7 @@ class Sought(NamedTuple):
     above : local minima up to this distance are kept, length; 0: only the nearest pairs.
     on_meeting : whether the search ends where the boundaries are found to meet.
     listed : how many pairs of boxes that stay open are listed.
+    patch : how much wider a minimum's patch is, length; minima are told up to `above` less this.
     """
 
     tolerance: float
@@ -44,6 +45,7 @@ class Sought(NamedTuple):
     above: float = 0.0
     on_meeting: bool = True
     listed: int = 0
+    patch: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,7 @@ class SolidModel(KeepsReadOnly):
     edges_sampled : tuple of int
         The edges whose kind (convex, reflex, smooth) is not proven, but only sampled. A sharp one
         of them is searched from both sides, so that its kind does not matter.
-    references, vertex_normals : what is found out only once it is asked for.
+    references, vertex_normals, vertex_fans : what is found out only once it is asked for.
     """
 
     def __init__(
@@ -73,6 +73,7 @@ class SolidModel(KeepsReadOnly):
         self.own, self.numbers, self.leaves, self.edges_sampled = packed_leaves(boundary)
         self.references: Array | None = None
         self.vertex_normals: dict[int, Array | None] = {}
+        self.vertex_fans: dict[int, Any] = {}
 
     def _compare(self, name: str, given: float | None, relative: float) -> None:
         if given is None:

@@ -6,6 +6,8 @@ face's tangents, of an edge and into its faces, of the corners and edges of a ve
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from standoff.geometry.validation import Array
@@ -57,36 +59,61 @@ def _steepest(solid: SolidModel, leaf: int, at: Array, n: Array) -> float:
     return max(abs(float(along @ n)), *(float(way @ n) for way in ways))
 
 
+class Fan(NamedTuple):
+    """The directions into a boundary from a vertex, own frame.
+
+    Attributes
+    ----------
+    ways : (n, 3) array
+        Unit ones, along edges and into faces from collapsed sides.
+    corners : (m, 3, 3) array
+        Of each face's corner: the edge that leaves it, what is a quarter turn from there, and the
+        one that arrives.
+    angles : (m,) array
+        From the first to the last, counterclockwise, radians.
+    """
+
+    ways: Array
+    corners: Array
+    angles: Array
+
+
 def _steepest_at_vertex(solid: SolidModel, feature: int, n: Array) -> float:
     number = feature - solid.boundary.n_faces - solid.boundary.n_edges
-    found = -1.0
+    if number not in solid.vertex_fans:
+        solid.vertex_fans[number] = _fan_of(solid, number)
+    fan = solid.vertex_fans[number]
+    found = float((fan.ways @ n).max(initial=-1.0))
+    along = fan.corners @ n
+    turned = np.arctan2(along[:, 1], along[:, 0]) % (2.0 * np.pi)
+    within = turned <= fan.angles
+    flat = np.hypot(along[:, 0], along[:, 1])
+    return max(found, float(flat[within].max(initial=-1.0)))
+
+
+def _fan_of(solid: SolidModel, vertex: int) -> Fan:
+    ways, corners, angles = [], [], []
     for chart in range(int(solid.boundary.ints[L.N_CHARTS])):
-        out, into, normal = corner_of(solid, chart, number)
+        out, into, normal = corner_of(solid, chart, vertex)
         if normal is None:
             if into:
-                found = max(found, _steepest_from_side(solid, chart, number, n))
+                ways += list(_ways_from_side(solid, chart, vertex))
             continue
+        outward = normal / np.linalg.norm(normal)
         for a, b in zip(out, into, strict=False):
-            found = max(found, _steepest_in_corner(a, b, normal / np.linalg.norm(normal), n))
-    return found
+            across = np.cross(outward, a)
+            ways += [a, b]
+            corners.append([a, across, b])
+            angles.append(np.arctan2(across @ b, a @ b) % (2.0 * np.pi))
+    return Fan(
+        np.reshape(ways, (-1, 3)), np.reshape(corners, (-1, 3, 3)), np.array(angles, dtype=float)
+    )
 
 
-def _steepest_in_corner(a: Array, b: Array, normal: Array, n: Array) -> float:
-    """Of the directions from a counterclockwise to b."""
-    flat = n - (n @ normal) * normal
-
-    def turned(way: Array) -> float:
-        return float(np.arctan2(normal @ np.cross(a, way), a @ way) % (2.0 * np.pi))
-
-    if turned(flat) <= turned(b):
-        return float(np.linalg.norm(flat))
-    return max(float(a @ n), float(b @ n))
-
-
-def _steepest_from_side(solid: SolidModel, chart: int, vertex: int, n: Array) -> float:
-    """Of the directions into a face from its side that is collapsed to a vertex."""
+def _ways_from_side(solid: SolidModel, chart: int, vertex: int) -> Array:
+    """Unit directions (n, 3) into a face from its side that is collapsed to a vertex."""
     point = np.asarray(solid.boundary.vertex_points[vertex], dtype=float)
-    found = -1.0
+    found = [np.empty((0, 3))]
     for k, leaf in enumerate(solid.leaves):
         if leaf.dim != 2 or leaf.chart != chart:
             continue
@@ -104,6 +131,5 @@ def _steepest_from_side(solid: SolidModel, chart: int, vertex: int, n: Array) ->
                 continue
             ways = np.array([jet[1 + across] for jet in jets]) * (1.0 - 2.0 * other)
             sizes = np.linalg.norm(ways, axis=1)
-            ways = ways[sizes > 0.0] / sizes[sizes > 0.0, None]
-            found = max(found, float((ways @ n).max(initial=-1.0)))
-    return found
+            found.append(ways[sizes > 0.0] / sizes[sizes > 0.0, None])
+    return np.concatenate(found)

@@ -109,3 +109,5 @@ MANY_SCREWS: Final = 1e-2
 LEAST_TURN: Final = 1e-2
 """Of a motion whose turn and velocity, over the face's size, have the length 1: below this it is a
 translation."""
+ONE_PATCH: Final = 0.95
+"""Cosine, of 18 degrees: pairs of points whose normals differ by more belong to no one patch."""

@@ -15,7 +15,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.front_rows import KEY_REALS, N_ROWS, ROW_REALS, STORE_REALS
 from standoff.solids.answer import MOST_OPEN
-from standoff.solids.spatial.minimum import Found, Sought, found_of, started
+from standoff.solids.spatial.minimum import MOST_LOCAL, Found, Sought, found_of, started
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING
 
@@ -73,7 +73,7 @@ def _room(thread: int) -> Work:
         np.zeros(STORE_REALS),
         np.empty(KEY_REALS * MOST_ROWS),
         np.empty(ROW_REALS * MOST_ROWS),
-        np.empty(C.MINIMUM_REALS * 256),
+        np.empty(C.MINIMUM_REALS * MOST_LOCAL),
         np.zeros(8, dtype=np.int64),
     )
 
@@ -94,10 +94,15 @@ class Frames:
     """Frames one after the other from a front on, which stays as it is."""
 
     def __init__(
-        self, packed: tuple[Any, Any], front: Front, tolerance: float, deadline: int
+        self,
+        packed: tuple[Any, Any],
+        front: Front,
+        tolerance: float,
+        deadline: int,
+        minima: float = 0.0,
     ) -> None:
         self.packed = packed
-        self.asked = np.array([tolerance, PROOF_ROUNDING])
+        self.asked = np.array([tolerance, PROOF_ROUNDING, minima])
         self.work = _room(threading.get_ident())
         store, keys, rows, _, _ = self.work
         self.before, self.best, self.senses = front.before.copy(), front.best.copy(), front.senses
@@ -105,6 +110,8 @@ class Frames:
         store[:] = front.store
         keys[: len(front.keys)] = front.keys
         rows[: len(front.rows)] = front.rows
+        if front.best[C.ABOVE] < minima:  # planes' faces may have shut out what is asked now
+            store[N_ROWS] = 0.0
 
     def go(self, poses: Array, told: Array) -> int:
         """Frames with B at poses (n, 12) in A's frame, into the rows of `told`; how many were

@@ -15,13 +15,14 @@ from standoff.kernels.entries.preparing import prepare_tracked_solids
 from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
-from standoff.solids.answer import MOST_OPEN, SolidProximity
-from standoff.solids.asked import DEADLINE
+from standoff.solids.answer import SolidProximity
+from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
 from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.distance import (
     Told,
     answer_of,
     inside_of,
+    reach_of_minima,
     senses_of,
     spatial_distance,
     told_apart,
@@ -88,6 +89,10 @@ class SolidTracker(KeepsReadOnly):
     deadline : int, optional
         Most evaluations of a frame. What is then open stays an interval, with the status DEADLINE,
         and the next frame goes on from there.
+    minima : float, optional
+        All local minima of the distance below this one are kept in each frame, length.
+    patch : float, optional
+        Of each of them up to four pairs of points, as of ``so.solids.distance``.
 
     Raises
     ------
@@ -105,6 +110,8 @@ class SolidTracker(KeepsReadOnly):
         *,
         tolerance: float | None = None,
         deadline: int = DEADLINE,
+        minima: float | None = None,
+        patch: float | None = None,
     ) -> None:
         self.dt = positive(dt, "dt")
         self.a, self.b = as_model(a), as_model(b)
@@ -114,6 +121,10 @@ class SolidTracker(KeepsReadOnly):
                 raise StandoffError(f"Body {name} {why}", name.lower(), body)
         self.tolerance = None if tolerance is None else positive(tolerance, "tolerance")
         self.deadline = whole_number(deadline, "deadline")
+        self.minima = None if minima is None else positive(minima, "minima")
+        self.patch = None if patch is None else positive(patch, "patch")
+        if self.patch is not None and self.minima is None:
+            raise StandoffError(PATCH_ALONE.format(patch=patch), "patch", patch)
         prepare_tracked_solids()
 
     def start(self, pose_a: PoseLike, pose_b: PoseLike) -> SolidState:
@@ -198,9 +209,8 @@ class SolidTracker(KeepsReadOnly):
 
     def _cold(self, pair: PlacedPair) -> tuple[SolidProximity, tuple[Any, Any], Front | None]:
         """An answer from nothing, with the front that frames go on from where there is one."""
-        answer = spatial_distance(
-            self.a, self.b, *_poses_of(pair), evaluations=self.deadline, tolerance=self.tolerance
-        )
+        asked = Asked(None, self.tolerance, self.minima, self.deadline, self.patch)
+        answer = spatial_distance(self.a, self.b, *_poses_of(pair), asked)
         answer = replace(answer, counts=answer.counts._replace(restarts=1))
         front = None
         if answer.lower_bound > 0.0:
@@ -219,10 +229,13 @@ class SolidTracker(KeepsReadOnly):
 
     def frames(self, front: Front) -> Frames:
         """Frames from a front on, with what this tracker asks."""
-        return Frames((self.a.packed, self.b.packed), front, self.proof, self.deadline)
+        return Frames(
+            (self.a.packed, self.b.packed), front, self.proof, self.deadline, self.minima or 0.0
+        )
 
     def _sought(self, pair: PlacedPair) -> Sought:
-        return Sought(pair.provable(self.proof), self.deadline, listed=MOST_OPEN)
+        reach = reach_of_minima(self.minima, self.patch)
+        return Sought(pair.provable(self.proof), self.deadline, np.inf, *reach)
 
     def _check(self, state: SolidState) -> None:
         if not isinstance(state, SolidState):

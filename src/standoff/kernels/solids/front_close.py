@@ -1,0 +1,201 @@
+"""Closing a row of the front by a potential: as before, or by another one; or cutting it."""
+
+from math import inf
+
+from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids.coaxial import NO_POTENTIAL
+from standoff.kernels.solids.front_motion import (
+    mark_bound,
+    slope_of,
+)
+from standoff.kernels.solids.front_rows import (
+    CUT,
+    FRAME,
+    KEPT,
+    ROW_DISTANCE,
+    ROW_FRAME,
+    ROW_REALS,
+    ROW_WAY,
+    add_row,
+    bound_key,
+    keep_bound,
+    put_row,
+    start_of_row,
+)
+from standoff.kernels.solids.spatial_closing import (
+    FEW_BOXES,
+    MOST_BOXES,
+    OWN_B,
+    THERE,
+    aimed,
+    closed_again,
+    closed_off_trim,
+    closed_to,
+    split,
+    widths,
+)
+from standoff.kernels.solids.spatial_pieces import (
+    leaf_jet,
+    reach_of,
+)
+from standoff.kernels.solids.spatial_progress import (
+    BISECTIONS,
+    BOXES,
+    LEAST,
+    ROUNDING,
+    SIZE,
+    TOLERANCE,
+    goal_of,
+)
+from standoff.kernels.solids.spatial_tolerances import SHORTEST_PART
+
+# Boxes of a potential that did before: of points that were found just now, and where others can be.
+AGAIN_BOXES, ONCE_BOXES = 8, 2
+# Of a pair of leaves' parts bounds are wanted that last for so many times more motion.
+LEAVES_AHEAD = 8.0
+# A pair of parts at the least distance that takes more boxes than this in each frame is cut, while
+# it is longer than so many times what B moves.
+MANY_BOXES, WIDE = 8, 4.0
+# Of a row that is proven to be no farther than is asked, another way is sought in one frame of so
+# many.
+RETRIED = 16
+
+
+@kernel
+def lasting_goal(best):
+    """What is proven of parts at the least distance: half of the tolerance more than is asked, so
+    that it lasts while the solids are nearly at rest."""
+    return goal_of(best) + 0.5 * best[TOLERANCE]
+
+
+@kernel
+def tied(best):
+    """Pairs of points up to this distance are as near as the nearest, as far as is proven."""
+    return best[LEAST] + best[TOLERANCE]
+
+
+@kernel
+def reach_of_part(part):
+    """From its middle point, at most, length."""
+    box = part.box
+    return reach_of(part.side, part.leaf, 0.5 * (box.u1 - box.u0), 0.5 * (box.v1 - box.v0))
+
+
+@kernel
+def keep_proven(front, k, low, way, phi, ball, travel, best):
+    """Keep the bound that a potential proved of a row, by `way` of `closed_to`, with its slope in
+    the ball (centre, radius) round B's part."""
+    low -= best[ROUNDING]
+    keep_bound(front, k, low, travel)
+    room = LEAVES_AHEAD * travel.ahead
+    sign = -1.0 if way == OWN_B else 1.0
+    slope, spread = slope_of(phi, sign, ball[0], ball[1], room)
+    mark_bound(front, k, low, slope, spread, room)
+
+
+@kernel
+def close_as_before(front, k, parts, ball, travel, best, counts):
+    """Is a row closed by the way that closed it last, through the points where Newton's method came
+    to last, which need not be the nearest now? Beyond what is tied; or, if those points were off
+    a trim, by the potential of the nearest ones."""
+    pa, pb = parts
+    o, r = ROW_REALS * k, front.rows
+    way, goal = int(r[o + ROW_WAY]), lasting_goal(best)
+    if way >= THERE and r[o + ROW_DISTANCE] >= goal:
+        return False
+    q = start_of_row(front, k)
+    distance = r[o + ROW_DISTANCE]
+    if way < THERE:
+        x = leaf_jet(pa.side, pa.leaf, q[0], q[1])[0]
+        y = leaf_jet(pb.side, pb.leaf, q[2], q[3])[0]
+        distance = norm(sub(y, x))
+        goal = aimed(goal_of(best), distance, LEAVES_AHEAD * travel.ahead)
+        # from where they were last, nearest points are farther apart than they need be
+        if goal <= tied(best) + best[ROUNDING] + 0.25 * travel.ahead:
+            return False
+    closed, phi = closed_again(way, goal, (pa, pb, q, distance), ONCE_BOXES, best, counts)
+    if closed:
+        keep_proven(front, k, goal, way, phi, ball, travel, best)
+        if way >= THERE:
+            # what ties with the nearest is on the trim, which is an edge of its own
+            r[o + ROW_FRAME] = front.store[FRAME]
+    return closed
+
+
+@kernel
+def close_again(front, k, pair, aim, best, counts):
+    """(bound, way, potential) by the way that closed a row last, of parts whose nearest points are
+    known: `aim`, or the least that lasts; -inf: none."""
+    way, goal = int(front.rows[ROW_REALS * k + ROW_WAY]), lasting_goal(best)
+    if way < 0:
+        return -inf, way, NO_POTENTIAL
+    if aim > tied(best):
+        closed, phi = closed_again(way, aim, pair, AGAIN_BOXES, best, counts)
+        if closed:
+            return aim, way, phi
+        if int(front.store[FRAME]) % RETRIED == 0:  # another way may prove more
+            return -inf, way, phi
+    closed, phi = closed_again(way, goal, pair, AGAIN_BOXES, best, counts)
+    return goal if closed else -inf, way, phi
+
+
+@kernel
+def is_wide(pair, travel):
+    """Is a part much longer than B moves in a frame?"""
+    pa, pb, _, _ = pair
+    au, av = widths(pa.side, pa.leaf, pa.box)
+    bu, bv = widths(pb.side, pb.leaf, pb.box)
+    return max(max(au, av), max(bu, bv)) > WIDE * travel.ahead
+
+
+@kernel
+def close_row(front, k, pair, ball, travel, best, minima, counts):
+    """Prove of two parts that they are as far apart as the nearest points, and more where they are;
+    what no potential proves is cut."""
+    pa, pb, _, distance = pair
+    goal, ahead, boxes = lasting_goal(best), LEAVES_AHEAD * travel.ahead, counts[BOXES]
+    aim = aimed(goal, distance, ahead)
+    low, way, phi = close_again(front, k, pair, aim, best, counts)
+    if low < goal:
+        way = -1
+        if aim > tied(best):
+            way, phi = closed_to(aim, -1, pair, FEW_BOXES, best, minima, counts)
+        if way < 0:
+            aim = goal
+            way, phi = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
+        if way < 0 and distance >= goal:
+            way, phi = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
+        front.rows[ROW_REALS * k + ROW_WAY] = way
+        low = aim if way >= 0 else -inf
+    if low < goal and distance < goal:
+        low, phi = closed_off_trim(goal, ahead, pa, pb, best, counts)
+    if counts[BOXES] - boxes > MANY_BOXES and distance < goal + ahead and is_wide(pair, travel):
+        low = -inf
+    if low >= goal:
+        keep_proven(front, k, low, way, phi, ball, travel, best)
+        return KEPT
+    counts[BISECTIONS] += 1
+    return CUT if cut_row(front, k, pair, best) else KEPT
+
+
+@kernel
+def cut_row(front, k, pair, best):
+    """Cut the longer part in two; False: it is too short, or there is no room."""
+    pa, pb, q, _ = pair
+    key = bound_key(front, k)
+    au, av = widths(pa.side, pa.leaf, pa.box)
+    bu, bv = widths(pb.side, pb.leaf, pb.box)
+    if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
+        return False
+    if max(au, av) >= max(bu, bv):
+        first, second = split(pa.box, au >= av)
+        if not add_row(front, pa.leaf, pb.leaf, (second, pb.box), key, q, True):
+            return False
+        put_row(front, k, pa.leaf, pb.leaf, first, pb.box, key)
+        return True
+    first, second = split(pb.box, bu >= bv)
+    if not add_row(front, pa.leaf, pb.leaf, (pa.box, second), key, q, True):
+        return False
+    put_row(front, k, pa.leaf, pb.leaf, pa.box, first, key)
+    return True

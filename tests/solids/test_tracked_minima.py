@@ -1,0 +1,176 @@
+"""All local minima below a distance in each frame: those that a query from nothing finds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from benchmarks.solids import drawn
+from scipy.spatial.transform import Rotation
+
+import standoff as so
+from families.solid_shapes import bracket, egg, peg, prism, ring, tube
+from standoff.solids import SolidProximity
+
+Array = np.ndarray
+STILL = np.eye(4)
+TABLE = prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
+"""A bridge upside down: two feet at y = 1."""
+CASES = {
+    "bracket, bracket": (bracket(), bracket(), 1.2, [0.79, -1.17, 1.05]),
+    "feet, egg": (TABLE, egg(0.9, 0.6, 0.4), 1.2, [1.17, 1.63, 1.68]),
+    "tube, peg": (tube(1.2, 2.0, 0.0, 1.0), peg(0.3, -1.0, 1.0), 1.1, [0.3, 0.1, 0.5]),
+    "feet, tube": (TABLE, tube(0.5, 0.8, 0.0, 0.6), 0.8, [1.99, 0.85, -1.28]),
+}
+
+
+def placed(turn: Array, shift: Array) -> Array:
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = turn, shift
+    return matrix
+
+
+def path(start: list[float], frames: int, rng: np.random.Generator) -> Array:
+    """Poses (n, 4, 4) about a place, in steps of some 1e-2."""
+    poses, turn, at = [], Rotation.from_rotvec([0.3, 0.4, -0.2]), np.array(start)
+    spin, drift = rng.normal(size=(2, 3))
+    for _ in range(frames):
+        spin, drift = spin + 0.3 * rng.normal(size=3), drift + 0.3 * rng.normal(size=3)
+        turn = Rotation.from_rotvec(6e-3 * spin / np.linalg.norm(spin)) * turn
+        at = at + 6e-3 * drift / np.linalg.norm(drift) - 0.02 * (at - start)
+        poses.append(placed(turn.as_matrix(), at))
+    return np.array(poses)
+
+
+def are_same(answer: SolidProximity, cold: SolidProximity) -> None:
+    assert answer.status is cold.status
+    assert [m.distance for m in answer.minima] == pytest.approx(
+        [m.distance for m in cold.minima], abs=1e-9
+    )
+    for each, other in zip(answer.minima, cold.minima, strict=True):
+        # what is proven of a minimum that is not the nearest is less in a frame
+        assert answer.lower_bound - 1e-12 <= each.lower_bound <= each.distance
+        assert each.lower_bound <= other.distance + 1e-9
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_minima_of_a_frame_are_those_of_a_query(name: str) -> None:
+    a, b, below, start = CASES[name]
+    poses = path(start, 90, np.random.default_rng(len(name)))
+    tracker = so.Tracker(a, b, minima=below)
+    state = tracker.start(STILL, poses[0])
+    are_same(state.proximity, so.solids.distance(a, b, STILL, poses[0], minima=below))
+    state, answers = tracker.run(state, STILL, poses[1:])
+    assert answers.certified.all()
+    several = 0
+    for k in range(0, len(answers), 4):
+        cold = so.solids.distance(a, b, STILL, poses[k + 1], minima=below)
+        are_same(answers[k], cold)
+        several += len(cold.minima) > 1
+    assert several > 5
+    assert not answers.restarts.any()
+
+
+def test_two_places_of_a_ring_are_followed_through_their_tie() -> None:
+    """Which of two is nearer changes; both are told all the time, and a step is a run."""
+    link = ring(1.0, 0.25)
+    angles = np.linspace(-0.1, 0.1, 41)
+    poses = np.array(
+        [
+            placed(Rotation.from_euler("xy", [np.pi / 2, t]).as_matrix(), [0.97, t, 0])
+            for t in angles
+        ]
+    )
+    tracker = so.Tracker(link, link, minima=0.5)
+    state = tracker.start(STILL, poses[0])
+    last = None
+    for pose in poses:
+        state, found = tracker.step(state, STILL, pose)
+        assert len(found.minima) == 2
+        points = np.array(sorted(m.point_a.tolist() for m in found.minima))
+        if last is not None:  # none of the two hops
+            assert np.abs(points - last).max() < 0.2
+        last = points
+
+
+def test_minima_come_and_go() -> None:
+    """A ball over two feet: one, two, one."""
+    ball = so.shapes.sphere(0.3)
+    xs = np.linspace(0.2, 2.8, 54)
+    poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in xs])
+    tracker = so.Tracker(TABLE, ball, minima=0.75)
+    _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
+    for x, answer in zip(xs, answers, strict=True):
+        # over a foot, or beside its edge; and the floor between both, 1 below the middle
+        expected = [max(0.0, x - 1.0), max(0.0, 2.0 - x)]
+        distances = sorted(np.hypot(each, 0.5) - 0.3 for each in expected)
+        if 1.0 < x < 2.0:
+            distances.append(1.0 - 0.3)
+        told = sorted(d for d in distances if d < 0.75 - 1e-9)
+        assert [m.distance for m in answer.minima] == pytest.approx(told, abs=1e-9)
+
+
+def test_a_frame_without_time_for_all_minima_says_so() -> None:
+    ball = so.shapes.sphere(0.3)
+    poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in np.linspace(1.2, 1.4, 12)])
+    tracker = so.Tracker(TABLE, ball, minima=0.75)
+    state = tracker.start(STILL, poses[0])
+    hasty = so.Tracker(TABLE, ball, minima=0.75, deadline=12)
+    _, answers = hasty.run(state, STILL, poses)
+    few = [answer for answer in answers if len(answer.minima) < 3]
+    assert few
+    assert {answer.status for answer in few} == {so.Status.DEADLINE}
+    state, _ = hasty.run(state, STILL, poses)
+    _, found = tracker.step(state, STILL, poses[-1])
+    assert found.certified
+    assert len(found.minima) == 3
+
+
+def test_what_is_asked_of_minima_is_checked() -> None:
+    for wrong in (0.0, -1.0, np.nan):
+        with pytest.raises(so.StandoffError, match="minima"):
+            so.Tracker(TABLE, peg(0.4, -1.0, 1.0), minima=wrong)
+
+
+def test_a_state_of_a_smaller_length_loses_none() -> None:
+    ball = so.shapes.sphere(0.3)
+    poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in np.linspace(1.2, 1.4, 12)])
+    near, far = (so.Tracker(TABLE, ball, minima=below) for below in (0.3, 0.75))
+    state, answers = near.run(near.start(STILL, poses[0]), STILL, poses)
+    assert {len(answer.minima) for answer in answers} == {1}
+    _, answers = far.run(state, STILL, poses[::-1])
+    assert {len(answer.minima) for answer in answers} == {3}
+    assert not answers.restarts.any()
+
+
+@pytest.mark.parametrize(
+    "seed", [*range(4), *(pytest.param(k, marks=pytest.mark.soak) for k in range(4, 40))]
+)
+def test_no_minimum_is_lost_in_drawn_motions(seed: int) -> None:
+    """Of turned parts with many edges, whose leaves their minima pass through."""
+    rng = np.random.default_rng(seed)
+    shapes = [TABLE, bracket(), drawn(15, rng), drawn(9, rng), tube(1.2, 2.0, 0.0, 1.0)]
+    several = 0
+    for _ in range(8):
+        a, b = (shapes[k] for k in rng.choice([[0, 2], [1, 2], [2, 3], [4, 3], [0, 4]]))
+        way = rng.normal(size=3)
+        at = way / np.linalg.norm(way) * rng.uniform(0.3, 0.7) * (a.size + b.size)
+        pose = placed(Rotation.random(random_state=rng).as_matrix(), at)
+        least = so.solids.distance(a, b, STILL, pose).distance
+        if least < 0.05:
+            continue
+        spin, drift = rng.normal(size=(2, 3)) * rng.choice([1e-3, 5e-3])
+        poses = [pose]
+        for _ in range(20):
+            step = Rotation.from_rotvec(spin).as_matrix()
+            poses.append(placed(step @ poses[-1][:3, :3], poses[-1][:3, 3] + drift))
+        below = least + rng.uniform(0.1, 0.6)
+        tracker = so.Tracker(a, b, minima=below)
+        _, answers = tracker.run(tracker.start(STILL, pose), STILL, np.array(poses))
+        for k in (8, 14, 20):
+            cold = so.solids.distance(a, b, STILL, poses[k], minima=below)
+            told = np.array([m.distance for m in answers[k].minima])
+            for each in cold.minima:
+                if each.distance < below - 1e-7:
+                    assert np.abs(told - each.distance).min(initial=np.inf) < 1e-8
+            several += len(cold.minima) > 1
+    assert several > 0
