@@ -138,6 +138,18 @@ def test_a_tracker_tells_them_and_a_swap_swaps_them() -> None:
     assert tracker.patch == 1e-3
 
 
+def test_a_patch_may_reach_beyond_the_minima() -> None:
+    """A box whose far edge is higher than the length below which minima are told."""
+    box, slab = so.Solid(so.shapes.box((1.0, 1.0, 1.0))), so.Solid(SLAB)
+    pose = placed(turned("x", 8e-4), [0.2, 0.1, 1.1 + 4e-4])
+    tracker = so.Tracker(slab, box, minima=0.1005, patch=1e-3)
+    state = tracker.start(STILL, pose)
+    for answer in (state.proximity, tracker.step(state, STILL, pose)[1]):
+        assert [m.distance for m in answer.minima] == pytest.approx([0.1], abs=1e-6)
+        gaps = [float(np.linalg.norm(y - x)) for x, y in answer.minima[0].patch]
+        assert sorted(gaps) == pytest.approx([0.1, 0.1, 0.1008, 0.1008], abs=1e-6)
+
+
 def test_what_is_asked_of_patches_is_checked() -> None:
     a, b = so.Solid(SLAB), bracket()
     with pytest.raises(so.StandoffError, match="minima"):

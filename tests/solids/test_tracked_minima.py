@@ -131,14 +131,32 @@ def test_what_is_asked_of_minima_is_checked() -> None:
             so.Tracker(TABLE, peg(0.4, -1.0, 1.0), minima=wrong)
 
 
-def test_a_state_of_a_smaller_length_loses_none() -> None:
-    ball = so.shapes.sphere(0.3)
-    poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in np.linspace(1.2, 1.4, 12)])
-    near, far = (so.Tracker(TABLE, ball, minima=below) for below in (0.3, 0.75))
-    state, answers = near.run(near.start(STILL, poses[0]), STILL, poses)
-    assert {len(answer.minima) for answer in answers} == {1}
-    _, answers = far.run(state, STILL, poses[::-1])
-    assert {len(answer.minima) for answer in answers} == {3}
+STEPPED = drawn(15, np.random.default_rng(1))
+"""A turned part, each of whose steps has a minimum to a foot of the table."""
+
+
+def stepping() -> Array:
+    """Poses of `STEPPED` at which its minima pass from leaf to leaf."""
+    turn = Rotation.from_rotvec([-1.47119, 0.70328, -0.65758]).as_matrix()
+    by = Rotation.from_rotvec([3.99e-4, -1.285e-3, 2.356e-3]).as_matrix()
+    poses = [placed(turn, [0.22098, 0.19456, -3.17058])]
+    for _ in range(20):
+        shift = poses[-1][:3, 3] + [-6.65e-4, 1.292e-3, 1.032e-3]
+        poses.append(placed(by @ poses[-1][:3, :3], shift))
+    return np.array(poses)
+
+
+def test_no_plane_shuts_out_a_minimum_that_is_asked() -> None:
+    """What a plane's face leaves out is farther than the minima, not than the nearest points; and
+    of a state of a tracker that asked less, nothing of that is taken over."""
+    poses, below = stepping(), 3.4
+    all_of_them, few = (so.Tracker(TABLE, STEPPED, minima=each) for each in (below, 2.906))
+    _, answers = all_of_them.run(all_of_them.start(STILL, poses[0]), STILL, poses)
+    assert {len(answer.minima) for answer in answers} == {6}
+    state, answers = few.run(few.start(STILL, poses[0]), STILL, poses[:15])
+    assert {len(answer.minima) for answer in answers} <= {1, 2}
+    _, answers = all_of_them.run(state, STILL, poses[15:])
+    assert {len(answer.minima) for answer in answers} == {6}
     assert not answers.restarts.any()
 
 

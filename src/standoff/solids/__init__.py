@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from standoff.solids.spatial.self_intersections import SelfIntersection, SelfIntersections
     from standoff.solids.spatial.solid import Solid
     from standoff.solids.tracked.answers import SolidAnswers
-    from standoff.solids.tracked.tracker import SolidState, SolidTracker
+    from standoff.solids.tracked.state import SolidState
+    from standoff.solids.tracked.tracker import SolidTracker
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -45,7 +46,8 @@ else:
             ),
             "standoff.solids.spatial.solid": ("Solid",),
             "standoff.solids.tracked.answers": ("SolidAnswers",),
-            "standoff.solids.tracked.tracker": ("SolidState", "SolidTracker"),
+            "standoff.solids.tracked.state": ("SolidState",),
+            "standoff.solids.tracked.tracker": ("SolidTracker",),
         },
     )
 

@@ -25,7 +25,8 @@ from standoff.solids.query import distance
 from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.solids.tracked.front import Front
-from standoff.solids.tracked.tracker import SolidState, SolidTracker, is_tracked
+from standoff.solids.tracked.state import SolidState
+from standoff.solids.tracked.tracker import SolidTracker, is_tracked
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 from standoff.world.broad_phase import Placed, Table

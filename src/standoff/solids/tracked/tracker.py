@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,65 +9,26 @@ from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive, whole_number
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.kernels.entries import tracked_solids as T
 from standoff.kernels.entries.preparing import prepare_tracked_solids
 from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
-from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
 from standoff.solids.spatial.bare_point import BarePoint
-from standoff.solids.spatial.distance import (
-    Told,
-    answer_of,
-    inside_of,
-    reach_of_minima,
-    senses_of,
-    spatial_distance,
-    told_apart,
-)
-from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
-from standoff.solids.tracked.answers import SolidAnswers, world_places
-from standoff.solids.tracked.front import Frames, Front, front_at, room_for
-from standoff.tracking.derivatives import Smoothness
+from standoff.solids.tracked.answers import SolidAnswers
+from standoff.solids.tracked.asks import Asks
+from standoff.solids.tracked.front import Frames, Front
+from standoff.solids.tracked.run import Run
+from standoff.solids.tracked.state import SolidState
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
-from standoff.tracking.status import Status
 
 if TYPE_CHECKING:
     from standoff.motion import PoseLike, PosesLike
 
 Array = NDArray[np.float64]
-
-
-@hides("front")
-class SolidState(KeepsReadOnly):
-    """What a tracker of solids carries from frame to frame, as a value: it is never changed.
-
-    Attributes
-    ----------
-    proximity : SolidProximity
-        The answer at the frame of this state.
-    rows : int
-        Pairs of pieces whose bounds are kept; 0 after a frame in which the solids meet.
-    """
-
-    __slots__ = ("_pair", "front", "proximity")
-
-    def __init__(
-        self, proximity: SolidProximity, pair: tuple[SolidModel, SolidModel], front: Front | None
-    ) -> None:
-        self.proximity, self._pair, self.front = proximity, pair, front
-
-    @property
-    def rows(self) -> int:
-        return int(self.front.store[0]) if self.front else 0
-
-    def __repr__(self) -> str:
-        return f"<SolidState of {self.rows} rows: {self.proximity!r}>"
 
 
 class SolidTracker(KeepsReadOnly):
@@ -125,6 +85,8 @@ class SolidTracker(KeepsReadOnly):
         self.patch = None if patch is None else positive(patch, "patch")
         if self.patch is not None and self.minima is None:
             raise StandoffError(PATCH_ALONE.format(patch=patch), "patch", patch)
+        asked = Asked(None, self.tolerance, self.minima, self.deadline, self.patch)
+        self._asks = Asks(self.a, self.b, asked)
         prepare_tracked_solids()
 
     def start(self, pose_a: PoseLike, pose_b: PoseLike) -> SolidState:
@@ -145,7 +107,8 @@ class SolidTracker(KeepsReadOnly):
             No pose.
         """
         pair = PlacedPair(self.a, self.b, Pose.of(pose_a), Pose.of(pose_b))
-        return SolidState(*self._cold(pair))
+        answer, front = self._asks.cold(pair)
+        return SolidState(answer, (self.a, self.b), front)
 
     def step(
         self, state: SolidState, pose_a: PoseLike, pose_b: PoseLike
@@ -170,8 +133,9 @@ class SolidTracker(KeepsReadOnly):
         ValueError
             A state of another pair, or no pose.
         """
-        made, _ = self.run(state, Pose.of(pose_a), Pose.of(pose_b))
-        return made, made.proximity
+        self._check(state)
+        a, b = _row(Pose.of(pose_a)), _row(Pose.of(pose_b))
+        return Run(self._asks, state, a, b).single()
 
     def run(
         self, state: SolidState, poses_a: PosesLike, poses_b: PosesLike
@@ -205,37 +169,11 @@ class SolidTracker(KeepsReadOnly):
                 "poses_b",
             )
         a, b = np.broadcast_to(a, (n, 12)), np.broadcast_to(b, (n, 12))
-        return _Run(self, state, a, b).answers()
-
-    def _cold(self, pair: PlacedPair) -> tuple[SolidProximity, tuple[Any, Any], Front | None]:
-        """An answer from nothing, with the front that frames go on from where there is one."""
-        asked = Asked(None, self.tolerance, self.minima, self.deadline, self.patch)
-        answer = spatial_distance(self.a, self.b, *_poses_of(pair), asked)
-        answer = replace(answer, counts=answer.counts._replace(restarts=1))
-        front = None
-        if answer.lower_bound > 0.0:
-            sought, senses = self._sought(pair), senses_of(answer.inside)
-            front = front_at(pair, pair.least(senses, sought), senses, sought)
-            frames = self.frames(front)
-            frames.go(pair.relative[None], room_for(1))
-            front = frames.kept()
-        return answer, (self.a, self.b), front
-
-    @property
-    def proof(self) -> float:
-        """To what the distance is proven where roundings are smaller, length."""
-        default = PROOF_TOLERANCE * (self.a.size + self.b.size)
-        return default if self.tolerance is None else self.tolerance
+        return Run(self._asks, state, a, b).answers()
 
     def frames(self, front: Front) -> Frames:
         """Frames from a front on, with what this tracker asks."""
-        return Frames(
-            (self.a.packed, self.b.packed), front, self.proof, self.deadline, self.minima or 0.0
-        )
-
-    def _sought(self, pair: PlacedPair) -> Sought:
-        reach = reach_of_minima(self.minima, self.patch)
-        return Sought(pair.provable(self.proof), self.deadline, np.inf, *reach)
+        return self._asks.frames(front)
 
     def _check(self, state: SolidState) -> None:
         if not isinstance(state, SolidState):
@@ -272,102 +210,9 @@ def is_tracked(a: Any, b: Any) -> bool:
     return all(isinstance(each, SolidModel) and not untracked(each) for each in (a, b))
 
 
-class _Run:
-    """One call of `SolidTracker.run`."""
-
-    def __init__(self, tracker: SolidTracker, state: SolidState, a: Array, b: Array) -> None:
-        self.tracker, self.state = tracker, state
-        self.a, self.b = a, b
-        self.relative = _relative(a, b)
-        self.told = room_for(len(a))
-        self.inside = np.full(len(a), "", dtype=object)
-        self.special: dict[int, SolidProximity] = {}
-
-    def answers(self) -> tuple[SolidState, SolidAnswers]:
-        front, at, n = self.state.front, 0, len(self.relative)
-        while at < n:
-            if front is None:
-                front, at = self._ask(at), at + 1
-            else:
-                front, at = self._gone(front, at)
-        slack = self.tracker.a.slack + self.tracker.b.slack
-        statuses = np.array([_status(inside) for inside in self.inside], dtype=object)
-        places = world_places(self.told, self.a)
-        answers = SolidAnswers(self.told, places, self.special, (statuses, slack), self._made)
-        return SolidState(answers[n - 1], (self.tracker.a, self.tracker.b), front), answers
-
-    def _gone(self, front: Front, at: int) -> tuple[Front | None, int]:
-        """Frames from a front on, as far as they are answered by it; the front after them."""
-        frames = self.tracker.frames(front)
-        while at < len(self.relative):
-            first, at = at, at + frames.go(self.relative[at:], self.told[at:])
-            self.inside[first:at] = front.inside
-            if not self._settled(at - 1, frames, front.inside):
-                return self._ask(at - 1), at
-        return frames.kept(), at
-
-    def _pair(self, k: int) -> PlacedPair:
-        poses = (_checked(row) for row in (self.a[k], self.b[k]))
-        return PlacedPair(self.tracker.a, self.tracker.b, *poses)
-
-    def _ask(self, k: int) -> Front | None:
-        """A frame from nothing."""
-        self.special[k], _, front = self.tracker._cold(self._pair(k))
-        self.told[k, T.MOTION], self.told[k, T.ANEW] = np.nan, 0.0
-        return front
-
-    def _settled(self, k: int, frames: Frames, inside: Any) -> bool:
-        """Is a frame answered, the last that was done? False: it is to be asked from nothing."""
-        row = self.told[k]
-        if row[T.ENDED] == T.TO_ASK:
-            return False
-        if row[T.ENDED] == T.SINGLE and row[T.SURE]:
-            return True
-        pair = self._pair(k)
-        if not row[T.SURE] and inside_of(pair) != inside:
-            return False
-        if row[T.ENDED] != T.SINGLE:
-            sought, found = self.tracker._sought(pair), frames.found()
-            answer = told_apart(pair, found, senses_of(inside), inside, sought)
-            self.special[k] = _counted(answer, row)
-        return True
-
-    def _made(self, k: int) -> SolidProximity:
-        """The answer of a frame that is proven at one place."""
-        row, pair, inside = self.told[k], self._pair(k), self.inside[k]
-        found = _found(row, self.tracker._sought(pair).tolerance)
-        place = pair.place(found.best, senses_of(inside))
-        told = Told(_status(inside), Smoothness.SMOOTH, inside=inside)
-        return _counted(answer_of(pair, found, [place], told), row)
-
-
-def _status(inside: str) -> Status:
-    """Of a frame that is proven at one place."""
-    return Status.CONTAINED if inside else Status.CONVERGED
-
-
-def _counted(answer: SolidProximity, row: Array) -> SolidProximity:
-    """With what a frame took."""
-    taken, rebuilds = int(row[T.TAKEN]), int(row[T.ANEW])
-    return replace(answer, counts=answer.counts._replace(evaluations=taken, rebuilds=rebuilds))
-
-
-def _found(row: Array, tolerance: float) -> Found:
-    best = np.array([row[T.DISTANCE], *row[T.LEAVES : T.LEAVES + 2],
-                     *row[T.PARAMETERS : T.PARAMETERS + 4], 0.0])  # fmt: skip
-    return Found(
-        float(row[T.DISTANCE]), float(row[T.BOUND]), tolerance, False, best[None], best,
-        np.empty((0, 11)), 0, (0, 0, 0, 0, 0), 0,
-    )  # fmt: skip
-
-
-def _poses_of(pair: PlacedPair) -> tuple[Pose, Pose]:
-    one, other = (_checked(row) for row in pair.poses)
-    return one, other
-
-
-def _checked(row: Array) -> Pose:
-    return Pose.from_checked(row[:9].reshape(3, 3), row[9:])
+def _row(pose: Pose) -> Array:
+    """A world pose (1, 12)."""
+    return np.concatenate([pose.rotation.ravel(), pose.translation])[None]
 
 
 def _read(given: Any, name: str) -> Array:
@@ -382,11 +227,3 @@ def _read(given: Any, name: str) -> Array:
             found.matrices[k],
         )
     return flat_poses(found.matrices)
-
-
-def _relative(a: Array, b: Array) -> Array:
-    """B's poses (n, 12) in A's frame."""
-    turns = a[:, :9].reshape(-1, 3, 3)
-    rotation = np.einsum("nji,njk->nik", turns, b[:, :9].reshape(-1, 3, 3))
-    shift = np.einsum("nji,nj->ni", turns, b[:, 9:] - a[:, 9:])
-    return np.ascontiguousarray(np.concatenate([rotation.reshape(-1, 9), shift], axis=1))
