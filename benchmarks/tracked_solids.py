@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 from benchmarks.cad_gaps import their_distance
 from benchmarks.solids import drawn_steps, posed, turned
 from standoff.solids import Solid, SolidTracker
+from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.tracked.front import room_for
 from standoff.tracking.status import Status
@@ -88,7 +89,7 @@ def by_themselves(tracker: SolidTracker, poses: np.ndarray) -> np.ndarray:
     relative = np.concatenate([poses[:, :3, :3].reshape(-1, 9), poses[:, :3, 3]], axis=1)
     found = []
     for _ in range(REPEATS):
-        front = tracker.start(STILL, poses[0]).front
+        front = SolidTracker(tracker.a, tracker.b).start(STILL, poses[0]).front
         assert front is not None, "the solids meet at the start"
         frames, told, times = tracker.frames(front), room_for(1), []
         for k in range(1, len(relative)):
@@ -99,11 +100,13 @@ def by_themselves(tracker: SolidTracker, poses: np.ndarray) -> np.ndarray:
     return np.min(found, axis=0)
 
 
-def row(pair: tuple[Turned, Turned], poses: np.ndarray, cold: int, theirs: int) -> str:
+def row(
+    pair: tuple[Turned, Turned], poses: np.ndarray, cold: int, theirs: int, deadline: int
+) -> str:
     """Of all frames one line; see `main`."""
     a, b = pair[0].shape, pair[1].shape
-    tracker = SolidTracker(a, b)
-    state = tracker.start(STILL, poses[0])
+    tracker = SolidTracker(a, b, deadline=deadline)
+    state = SolidTracker(a, b).start(STILL, poses[0])
     means = []
     for _ in range(REPEATS):
         start = time.perf_counter()
@@ -137,6 +140,7 @@ def main() -> None:
     parser.add_argument("--faces", type=int, nargs="*", default=[30, 100, 150])
     parser.add_argument("--cold", type=int, default=50, help="queries from nothing")
     parser.add_argument("--theirs", type=int, default=0, help="queries of OpenCASCADE")
+    parser.add_argument("--deadline", type=int, default=DEADLINE, help="evaluations of a frame")
     given = parser.parse_args()
     for faces in given.faces:
         rng = np.random.default_rng(faces)
@@ -150,7 +154,8 @@ def main() -> None:
             for gap in GAPS:
                 poses = sliding(a, b, gap, speed, given.frames, rng)
                 print(
-                    f"{speed:6g} {gap:6g} {row(pair, poses, given.cold, given.theirs)}", flush=True
+                    f"{speed:6g} {gap:6g} {row(pair, poses, given.cold, given.theirs, given.deadline)}",
+                    flush=True,
                 )
 
 

@@ -96,8 +96,8 @@ ITEMS: tuple[Item, ...] = (
          "[penetration](../penetration.md)", ()),
     Item("haptic device and rendering (application)", "partial", "a simulated device",
          "[the virtual coupler](../coupler.md)", ("5",)),
-    Item("bodies that are not convex, broad phase (future work)", "absent", "",
-         "–", ()),
+    Item("bodies that are not convex, broad phase (future work)", "partial",
+         "not in contact at frame speed", "[solids](../solids.md), [worlds](../worlds.md)", ()),
 )
 # fmt: on
 
