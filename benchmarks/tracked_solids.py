@@ -89,7 +89,7 @@ def by_themselves(tracker: SolidTracker, poses: np.ndarray) -> np.ndarray:
     relative = np.concatenate([poses[:, :3, :3].reshape(-1, 9), poses[:, :3, 3]], axis=1)
     found = []
     for _ in range(REPEATS):
-        front = SolidTracker(tracker.a, tracker.b).start(STILL, poses[0]).front
+        front = tracker.start(STILL, poses[0]).front
         assert front is not None, "the solids meet at the start"
         frames, told, times = tracker.frames(front), room_for(1), []
         for k in range(1, len(relative)):
@@ -100,13 +100,11 @@ def by_themselves(tracker: SolidTracker, poses: np.ndarray) -> np.ndarray:
     return np.min(found, axis=0)
 
 
-def row(
-    pair: tuple[Turned, Turned], poses: np.ndarray, cold: int, theirs: int, deadline: int
-) -> str:
+def row(pair: tuple[Turned, Turned], poses: np.ndarray, given: argparse.Namespace) -> str:
     """Of all frames one line; see `main`."""
     a, b = pair[0].shape, pair[1].shape
-    tracker = SolidTracker(a, b, deadline=deadline)
-    state = SolidTracker(a, b).start(STILL, poses[0])
+    tracker = SolidTracker(a, b, deadline=given.deadline)
+    state = tracker.start(STILL, poses[0])
     means = []
     for _ in range(REPEATS):
         start = time.perf_counter()
@@ -115,12 +113,12 @@ def row(
     apart = np.flatnonzero(answers.status == Status.OVERLAPPING)
     times = by_themselves(tracker, poses[: apart[0] + 1] if len(apart) else poses)
     queries, others, worst = [], [], 0.0
-    for k in np.linspace(1, len(poses) - 1, cold).astype(int):
+    for k in np.linspace(1, len(poses) - 1, given.cold).astype(int):
         start = time.perf_counter()
         answer = spatial_distance(a, b, STILL, poses[k])
         queries.append(1e6 * (time.perf_counter() - start))
         worst = max(worst, abs(answer.distance - answers.distance[k - 1]))
-    for k in np.linspace(1, len(poses) - 1, theirs).astype(int):
+    for k in np.linspace(1, len(poses) - 1, given.theirs).astype(int):
         start = time.perf_counter()
         their_distance(*pair, (poses[k, :3, :3], poses[k, :3, 3]))
         others.append(1e6 * (time.perf_counter() - start))
@@ -153,10 +151,8 @@ def main() -> None:
         for speed in SPEEDS:
             for gap in GAPS:
                 poses = sliding(a, b, gap, speed, given.frames, rng)
-                print(
-                    f"{speed:6g} {gap:6g} {row(pair, poses, given.cold, given.theirs, given.deadline)}",
-                    flush=True,
-                )
+                line = row(pair, poses, given)
+                print(f"{speed:6g} {gap:6g} {line}", flush=True)
 
 
 if __name__ == "__main__":

@@ -245,6 +245,40 @@ def test_a_frame_without_time_is_an_interval_and_the_next_goes_on() -> None:
     assert found.certified
 
 
+def test_a_long_way_is_counted_from_nothing_again() -> None:
+    """B goes round A again and again, by some thirty sizes: what was kept stands."""
+    a, b = PAIRS["bracket, bracket"]
+    angles = np.linspace(0.0, 18.0 * np.pi, 901)
+    turns = [Rotation.from_rotvec([0.3, 0.2 * np.sin(t), 0.1]).as_matrix() for t in angles]
+    round_it = [[3.4 * np.cos(t) + 1.0, 3.4 * np.sin(t) + 0.7, 0.3] for t in angles]
+    poses = np.array([placed(*each) for each in zip(turns, round_it, strict=True)])
+    tracker = so.Tracker(a, b)
+    _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
+    assert answers.motion.sum() > 2.0 * 16.0 * (a.size + b.size)
+    assert answers.certified.all()
+    assert not answers.restarts.any()
+    for k in range(0, len(answers), 40):
+        is_as_cold(answers[k], so.solids.distance(a, b, STILL, poses[k]))
+
+
+def test_with_little_time_frames_go_on_all_the_same() -> None:
+    """Few evaluations a frame: intervals are true, nothing is asked anew, and most are proven."""
+    a, b = PAIRS["bracket, bracket"]
+    poses = wandering(a, b, 300, 4e-3, np.random.default_rng(2), 0.1)
+    hasty = SolidTracker(a, b, deadline=60)
+    state = hasty.start(STILL, poses[0])
+    assert state.proximity.certified
+    _, answers = hasty.run(state, STILL, poses)
+    assert not answers.restarts.any()
+    assert set(answers.status) == {so.Status.CONVERGED, so.Status.DEADLINE}
+    assert answers.certified.mean() > 0.5
+    assert answers.evaluations.max() < 400
+    for k in range(0, len(answers), 10):
+        cold = so.solids.distance(a, b, STILL, poses[k])
+        assert answers.lower_bound[k] <= cold.upper_bound
+        assert answers.upper_bound[k] >= cold.lower_bound
+
+
 def test_afront_that_has_grown_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     a, b = PAIRS["bolt, tube"]
     rng = np.random.default_rng(7)

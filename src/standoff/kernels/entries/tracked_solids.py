@@ -24,15 +24,16 @@ from standoff.kernels.solids.front_frame import (
 from standoff.kernels.solids.front_rows import (
     FRAME,
     GONE,
-    N_ROWS,
     ROW_REALS,
     Front,
     Travel,
+    begin_motion,
 )
 from standoff.kernels.solids.spatial_pieces import leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     AT,
+    BUDGET,
     LEAF_A,
     LEAF_B,
     LEAST,
@@ -47,6 +48,7 @@ from standoff.kernels.solids.spatial_progress import (
     TOLERANCE,
     evaluations,
 )
+from standoff.kernels.solids.spatial_tolerances import MOTION_SPARE
 
 # What a frame tells: how it ended, distance, bound, motion, both points, leaves and parameters,
 # rows of the front, evaluations, 1 where the front was made anew, and 1 where the solids are sure
@@ -78,9 +80,11 @@ def tell(a, b, best, minima, least, front, counts, out):
 
 
 @kernel
-def how_ended(a, b, best, minima, low):
-    if best[MET] > 0.0 or low <= 0.0:
+def how_ended(a, b, best, minima, low, counts):
+    if best[MET] > 0.0:
         return TO_ASK
+    if low <= 0.0:  # without time a query would tell no more, and the next frame goes on from here
+        return INTERVAL if evaluations(counts) > best[BUDGET] else TO_ASK
     if low < best[LEAST] - best[TOLERANCE]:
         return INTERVAL
     single = best[ABOVE] == 0.0 and is_single(a, b, best, minima)
@@ -125,7 +129,7 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         sure = step < low
         store[GONE] += step
         if store[GONE] > FARTHEST_GONE * best[SIZE]:
-            store[GONE], store[N_ROWS] = 0.0, 0.0
+            begin_motion(kept, FARTHEST_GONE * MOTION_SPARE * best[SIZE])
         store[FRAME] += 1.0
         ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
         afar = far_side(a, now, radius)
@@ -142,7 +146,7 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         anew = frame(a, now, kept, travel, best, minima, c)
         out = pointer(told, TOLD_REALS * i)
         tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)
-        out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND]), step
+        out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], c), step
         out[ANEW], out[SURE] = 1.0 if anew else 0.0, 1.0 if sure else 0.0
         last, low = now, out[BOUND]
         if out[ENDED] != SINGLE or not sure:

@@ -11,6 +11,7 @@ from standoff.kernels.solids.front_close import tied
 from standoff.kernels.solids.front_look import descend, settle_row
 from standoff.kernels.solids.front_minima import find_minima
 from standoff.kernels.solids.front_rows import (
+    COST,
     MAKING,
     N_MADE,
     N_ROWS,
@@ -31,6 +32,7 @@ from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     AT,
     BOUND,
+    BUDGET,
     LEAF_A,
     LEAF_B,
     LEAST,
@@ -40,6 +42,7 @@ from standoff.kernels.solids.spatial_progress import (
     N_OPEN,
     NOWHERE,
     SIZE,
+    evaluations,
     farthest,
     keep_found,
 )
@@ -52,8 +55,8 @@ from standoff.kernels.solids.spatial_tolerances import (
 
 # A front that has this many times its first rows, and some, is made anew.
 GROWN, GROWN_BY = 2.0, 256.0
-# Sizes of a motion after which a front is made anew, so that its rounding stays below that of a
-# query.
+# Sizes of a motion after which it counts from 0 again, so that its rounding stays below that of a
+# query; and times these and `MOTION_SPARE` the size, for the rounding of what was kept beside it.
 FARTHEST_GONE = 16.0
 # Bounds are wanted that last for so many frames like this one, and for so many sizes at most.
 FRAMES_AHEAD, FARTHEST_AHEAD = 4.0, 0.02
@@ -123,21 +126,23 @@ def holds(box, u, v):
 @kernel
 def make_front(front):
     """One row, of both roots."""
-    front.store[N_ROWS], front.store[MAKING] = 0.0, 1.0
+    front.store[N_ROWS], front.store[MAKING], front.store[COST] = 0.0, 1.0, 0.0
     add_row(front, -1, -1, (NOWHERE, NOWHERE), -inf, (0.0, 0.0, 0.0, 0.0), False)
 
 
 @kernel
-def has_grown(front):
-    made = front.store[MAKING] == 0.0
-    return made and front.store[N_ROWS] > GROWN * front.store[N_MADE] + GROWN_BY
+def has_grown(front, best):
+    """Is a front to be made anew, and is there time for it?"""
+    store = front.store
+    grown = store[MAKING] == 0.0 and store[N_ROWS] > GROWN * store[N_MADE] + GROWN_BY
+    return grown and best[BUDGET] > GROWN * store[COST]
 
 
 @kernel
 def frame(a, b, front, travel, best, minima, counts):
     """Fill `best` and `minima` as a search does; whether the front was made anew."""
     store = front.store
-    anew = store[N_ROWS] == 0.0 or has_grown(front)
+    anew = store[N_ROWS] == 0.0 or has_grown(front, best)
     if anew:
         make_front(front)
     above = best[ABOVE]
@@ -151,8 +156,10 @@ def frame(a, b, front, travel, best, minima, counts):
             a, b, front, k, travel, best, minima, counts
         ):
             k += 1
-    if store[MAKING] > 0.0 and best[N_OPEN] == 0.0:
-        store[N_MADE], store[MAKING] = store[N_ROWS], 0.0
+    if store[MAKING] > 0.0:
+        store[COST] += evaluations(counts)
+        if best[N_OPEN] == 0.0:
+            store[N_MADE], store[MAKING] = store[N_ROWS], 0.0
     # what rests, and may be as near as the nearest, is gone through all the same
     for k in range(int(store[N_ROWS])):
         if best[MET] == 0.0 and is_passed_over(front, k, tied(best), travel):

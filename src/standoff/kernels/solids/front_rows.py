@@ -33,10 +33,10 @@ KEPT, CUT, GONE_ROW, OPEN_ROW = 0, 1, 2, 3
 # Of each row two numbers: bound and shut, both plus the motion when they were proven.
 KEY_REALS = 2
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
-# the front had when it was made, how many frames there were, and 1 until a front that is being made
-# has no open rows.
-N_ROWS, GONE, N_MADE, FRAME, MAKING = 0, 1, 2, 3, 4
-STORE_REALS = 5
+# the front had when it was made, how many frames there were, 1 until a front that is being made
+# has no open rows, and how many evaluations it took to make it.
+N_ROWS, GONE, N_MADE, FRAME, MAKING, COST = 0, 1, 2, 3, 4, 5
+STORE_REALS = 6
 
 
 class Front(NamedTuple):
@@ -143,6 +143,15 @@ def is_due(front, k, goal, travel):
         return False
     # what cannot hold a nearest pair may still hold a common point, if the solids may have one
     return shut <= travel.gone or (not travel.sure and bound <= travel.gone)
+
+
+@kernel
+def begin_motion(front, spare):
+    """The motion counts from 0 again; `spare` is for the rounding of what was kept beside it."""
+    gone = front.store[GONE]
+    for k in range(KEY_REALS * int(front.store[N_ROWS])):
+        front.keys[k] -= gone + spare
+    front.store[GONE] = 0.0
 
 
 @kernel

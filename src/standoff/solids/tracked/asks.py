@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import Asked
+from standoff.solids.asked import DEADLINE, Asked
 from standoff.solids.spatial.distance import reach_of_minima, senses_of, spatial_distance
 from standoff.solids.spatial.minimum import Sought
 from standoff.solids.spatial.pair import PlacedPair
@@ -30,6 +30,11 @@ class Asks(NamedTuple):
         """To what the distance is proven where roundings are smaller, length."""
         tolerance = self.options.tolerance
         return PROOF_TOLERANCE * (self.a.size + self.b.size) if tolerance is None else tolerance
+
+    def in_time(self) -> Asks:
+        """The same with the time that a query has by default, at least."""
+        most = max(self.options.deadline, DEADLINE)
+        return self._replace(options=self.options._replace(deadline=most))
 
     def sought(self, pair: PlacedPair) -> Sought:
         """What a search at poses is asked."""

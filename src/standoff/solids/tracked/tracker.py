@@ -90,7 +90,7 @@ class SolidTracker(KeepsReadOnly):
         prepare_tracked_solids()
 
     def start(self, pose_a: PoseLike, pose_b: PoseLike) -> SolidState:
-        """Find the witness points globally, and prove it.
+        """Find the witness points globally, and prove it, whatever time a frame has.
 
         Parameters
         ----------
@@ -107,7 +107,7 @@ class SolidTracker(KeepsReadOnly):
             No pose.
         """
         pair = PlacedPair(self.a, self.b, Pose.of(pose_a), Pose.of(pose_b))
-        answer, front = self._asks.cold(pair)
+        answer, front = self._asks.in_time().cold(pair)
         return SolidState(answer, (self.a, self.b), front)
 
     def step(
