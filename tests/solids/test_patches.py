@@ -9,7 +9,9 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from families.solid_shapes import bolt, bracket, egg, peg, prism, ring, tube
 from standoff.geometry import Line
+from standoff.solids.of_pieces import turned as turned_round
 from standoff.solids.spatial.models import as_model
+from standoff.solids.spatial.patches import _outside
 from standoff.solids.spatial.points import distance_to_boundary
 
 Array = np.ndarray
@@ -148,6 +150,32 @@ def test_a_patch_may_reach_beyond_the_minima() -> None:
         assert [m.distance for m in answer.minima] == pytest.approx([0.1], abs=1e-6)
         gaps = [float(np.linalg.norm(y - x)) for x, y in answer.minima[0].patch]
         assert sorted(gaps) == pytest.approx([0.1, 0.1, 0.1008, 0.1008], abs=1e-6)
+
+
+def test_what_is_told_of_minima_does_not_reach_so_far() -> None:
+    ball = so.shapes.sphere(0.3)
+    pose = placed(np.eye(3), [1.08, 1.5, 0.5])
+    found = so.solids.distance(FEET, ball, STILL, pose, minima=0.65, patch=0.2)
+    assert len(found.minima) == 1
+    assert len(so.solids.distance(FEET, ball, STILL, pose, minima=0.75).minima) == 3
+
+
+def test_what_is_outside_of_a_point_a_line_and_a_polygon() -> None:
+    line, square = [[0.0, 0.0], [1.0, 0.0]], [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+    spots = np.array([[-1.0, 0.0], [2.0, 0.0], [0.5, 0.2], [0.5, -0.3]])
+    assert _outside(np.array(line[:1]), spots) == pytest.approx([1, 2, 0.29**0.5, 0.34**0.5])
+    assert _outside(np.array(line), spots) == pytest.approx([1.0, 1.0, 0.2, 0.3])
+    assert _outside(np.array(square), spots) == pytest.approx([1.0, 1.0, -0.2, 0.3])
+
+
+def test_an_answer_that_is_turned_turns_its_patches() -> None:
+    box = so.shapes.box((1.0, 1.0, 1.0))
+    found = asked(SLAB, box, placed(np.eye(3), [1.8, 0.0, 1.1]))
+    for (x, y), (other_y, other_x) in zip(
+        found.minima[0].patch, turned_round(found).minima[0].patch, strict=True
+    ):
+        assert np.array_equal(x, other_x)
+        assert np.array_equal(y, other_y)
 
 
 def test_what_is_asked_of_patches_is_checked() -> None:

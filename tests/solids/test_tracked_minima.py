@@ -131,6 +131,16 @@ def test_what_is_asked_of_minima_is_checked() -> None:
             so.Tracker(TABLE, peg(0.4, -1.0, 1.0), minima=wrong)
 
 
+def test_vertices_are_minima_where_all_ways_lead_off() -> None:
+    """A ball beside the gap of two feet, in front of them: a corner of each, and none else."""
+    ball = so.shapes.sphere(0.1)
+    pose = placed(np.eye(3), [1.52, 1.3, 1.4])
+    found = so.solids.distance(TABLE, ball, STILL, pose, minima=0.7)
+    expected = [np.hypot(x, 0.5) - 0.1 for x in (0.48, 0.52)]
+    assert [m.distance for m in found.minima] == pytest.approx(expected, abs=1e-9)
+    assert {m.feature_a.kind for m in found.minima} == {"vertex"}
+
+
 STEPPED = drawn(15, np.random.default_rng(1))
 """A turned part, each of whose steps has a minimum to a foot of the table."""
 
