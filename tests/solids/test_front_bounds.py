@@ -192,7 +192,7 @@ def is_within(solid: Solid, row: Array, side: int, found: so.solids.NearestPair)
 def travel_at(turn: Array, shift: Array) -> F.Travel:
     pose = Pose(tuple(turn.ravel().tolist()), tuple(shift.tolist()))
     quaternion = unit_quaternion(pose.R)
-    return F.Travel(50.0, 0.0, RADIUS, 1.0 / RADIUS, AFAR, True, pose, quaternion, 0.0, 0.0)
+    return F.Travel(50.0, 0.0, RADIUS, 1.0 / RADIUS, AFAR, True, pose, quaternion, 0.0, 0.0, 0.0)
 
 
 @njit
@@ -209,7 +209,9 @@ def carried(
     """(bound, length that is still shut) of a row that had 1 and 0.5, with the slope along z, when
     B was as it is; after a turn of B about the middle of its piece, and a shift. It was shut for
     pairs up to `goal`, and is asked for those up to 0."""
-    front = F.Front(np.zeros(F.STORE_REALS), np.zeros(2), np.zeros(F.ROW_REALS), 1)
+    front = F.Front(
+        np.zeros(F.STORE_REALS), np.zeros(F.KEY_REALS), np.zeros(F.ROW_REALS), 1, np.zeros(0)
+    )
     rng = np.random.default_rng(3)
     first, at = Rotation.random(random_state=rng).as_matrix(), rng.normal(size=3)
     front.keys[:] = -np.inf

@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from families.solid_shapes import bolt, bracket, egg, peg, prism, ring, tube
 from standoff.geometry import Line
+from standoff.kernels.solids.patch import outside
 from standoff.solids.of_pieces import turned as turned_round
 from standoff.solids.spatial.models import as_model
-from standoff.solids.spatial.patches import _outside
 from standoff.solids.spatial.points import distance_to_boundary
 
 Array = np.ndarray
@@ -161,11 +161,11 @@ def test_what_is_told_of_minima_does_not_reach_so_far() -> None:
 
 
 def test_what_is_outside_of_a_point_a_line_and_a_polygon() -> None:
-    line, square = [[0.0, 0.0], [1.0, 0.0]], [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
-    spots = np.array([[-1.0, 0.0], [2.0, 0.0], [0.5, 0.2], [0.5, -0.3]])
-    assert _outside(np.array(line[:1]), spots) == pytest.approx([1, 2, 0.29**0.5, 0.34**0.5])
-    assert _outside(np.array(line), spots) == pytest.approx([1.0, 1.0, 0.2, 0.3])
-    assert _outside(np.array(square), spots) == pytest.approx([1.0, 1.0, -0.2, 0.3])
+    square = [0.0, 0.0, 7.0, 1.0, 0.0, 7.0, 1.0, 1.0, 7.0, 0.0, 1.0, 7.0]
+    spots = [(-1.0, 0.0), (2.0, 0.0), (0.5, 0.2), (0.5, -0.3)]
+    expected = {1: [1.0, 2.0, 0.29**0.5, 0.34**0.5], 2: [1.0, 1.0, 0.2, 0.3], 4: [1, 1, -0.2, 0.3]}
+    for n, far in expected.items():
+        assert [outside.py_func(square, n, x, y) for x, y in spots] == pytest.approx(far)
 
 
 def test_an_answer_that_is_turned_turns_its_patches() -> None:

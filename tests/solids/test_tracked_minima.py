@@ -110,19 +110,26 @@ def test_minima_come_and_go() -> None:
 
 
 def test_a_frame_without_time_for_all_minima_says_so() -> None:
+    """Those that come up are found late, and until then it is said; those of before are kept."""
     ball = so.shapes.sphere(0.3)
-    poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in np.linspace(1.2, 1.4, 12)])
+    xs = np.linspace(0.4, 1.4, 24)
+    poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in xs])
     tracker = so.Tracker(TABLE, ball, minima=0.75)
     state = tracker.start(STILL, poses[0])
+    assert len(state.proximity.minima) == 1
     hasty = so.Tracker(TABLE, ball, minima=0.75, deadline=12)
     _, answers = hasty.run(state, STILL, poses)
-    few = [answer for answer in answers if len(answer.minima) < 3]
-    assert few
-    assert {answer.status for answer in few} == {so.Status.DEADLINE}
+    few = [answer for x, answer in zip(xs, answers, strict=True) if x > 1.1]
+    assert {answer.status for answer in few if len(answer.minima) < 3} == {so.Status.DEADLINE}
     state, _ = hasty.run(state, STILL, poses)
     _, found = tracker.step(state, STILL, poses[-1])
     assert found.certified
     assert len(found.minima) == 3
+    # no time at all: what was followed before is followed on
+    none = so.Tracker(TABLE, ball, minima=0.75, deadline=1)
+    state, found = none.step(state, STILL, poses[-1])
+    assert found.status is so.Status.DEADLINE
+    assert len(found.minima) == len(state.proximity.minima)
 
 
 def test_what_is_asked_of_minima_is_checked() -> None:

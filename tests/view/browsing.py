@@ -11,10 +11,17 @@ from scipy.spatial.transform import Rotation
 
 
 def until(holds: Callable[[], bool], seconds: float = 15.0) -> None:
+    assert happens(holds, seconds), "it did not come about"
+
+
+def happens(holds: Callable[[], bool], seconds: float) -> bool:
+    """Does something come about within some time?"""
     end = time.monotonic() + seconds
     while not holds():
-        assert time.monotonic() < end, "it did not come about"
+        if time.monotonic() > end:
+            return False
         time.sleep(0.05)
+    return True
 
 
 def on_screen(page: Any, point: Any) -> tuple[float, float]:
@@ -42,16 +49,43 @@ def opened(page: Any, tab: Any) -> Any:
 
 def pull(page: Any, tab: Any, axis: int, length: float, release: bool = True) -> None:
     """Drag the ball by an arrow of its handle."""
-    grip = page.stage.picture.handles[0]
-    start = page.stage.pair.poses[0].translation.copy()
-    start[axis] += 0.8 * grip.scale
+    before = page.stage.pair.poses[0].translation.copy()
     along = np.eye(3)[axis]
+
+    def grip() -> Any:
+        place = page.stage.pair.poses[0].translation
+        return place + 0.8 * page.stage.picture.handles[0].scale * along
+
+    def moved() -> bool:
+        return bool((page.stage.pair.poses[0].translation != before).any())
+
+    drag(page, tab, grip, length * along, moved, release)
+    tab.page.wait_for_timeout(300)
+
+
+def drag(
+    page: Any,
+    tab: Any,
+    grip: Callable[[], Any],
+    way: Any,
+    moved: Callable[[], bool],
+    release: bool = True,
+) -> None:
+    """Drag from a point of the world, `grip`, along a vector until something has moved. A browser
+    that is short of time may not have drawn a handle yet when the button goes down: tried again."""
     mouse = tab.page.mouse
-    mouse.move(*on_screen(page, start))
-    tab.page.wait_for_timeout(300)
-    mouse.down()
-    for part in np.linspace(0.0, length, 8):
-        mouse.move(*on_screen(page, start + part * along))
-    if release:
-        mouse.up()
-    tab.page.wait_for_timeout(300)
+    for _ in range(4):
+        start = grip()
+        mouse.move(*on_screen(page, start))
+        tab.page.wait_for_timeout(500)
+        mouse.down()
+        for part in np.linspace(0.0, 1.0, 8):
+            mouse.move(*on_screen(page, start + part * way))
+        held = happens(moved, 5.0)
+        if held:
+            tab.page.wait_for_timeout(500)
+        if release or not held:
+            mouse.up()
+        if held:
+            return
+    raise AssertionError("nothing was dragged")

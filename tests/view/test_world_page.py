@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browsing import on_screen, opened, until
+from browsing import drag, opened, until
 
 import standoff as so
 from standoff.motion import ConstantTwist, Pose, Twist
@@ -243,17 +243,13 @@ def test_a_body_dragged_in_a_browser(chromium: Any, tab: Callable[..., Any]) -> 
         page._asked.put(lambda: page.hand(1))
         until(lambda: stage._hand == 1)
         desk.page.wait_for_timeout(1500)
-        grip = stage.picture.handle
-        start = stage.live.poses[1, :3, 3] + [0.0, 0.0, 0.8 * grip.scale]
-        mouse = desk.page.mouse
-        mouse.move(*on_screen(page, start))
-        desk.page.wait_for_timeout(500)
-        mouse.down()
-        for part in np.linspace(0.0, 0.4, 8):
-            mouse.move(*on_screen(page, start + part * np.array([0.0, 0.0, 1.0])))
-        desk.page.wait_for_timeout(500)
-        mouse.up()
-        until(lambda: stage.live.poses[1, 2, 3] > 0.2)
+        drag(
+            page,
+            desk,
+            lambda: stage.live.poses[1, :3, 3] + [0.0, 0.0, 0.8 * stage.picture.handle.scale],
+            np.array([0.0, 0.0, 0.4]),
+            lambda: stage.live.poses[1, 2, 3] > 0.2,
+        )
         desk.page.wait_for_timeout(500)
         centre = stage.live.poses[1, :3, 3]
         assert stage.live.answer["ball 1", "ball 2"].distance == pytest.approx(

@@ -45,6 +45,9 @@ class NearestPair(NamedTuple):
     patch : tuple of (point_a, point_b)
         With ``patch=``: up to four pairs that span where the boundaries are hardly farther apart,
         counterclockwise about the normal.
+    branch : int
+        In frames of a tracker: the number that a minimum keeps from frame to frame while it lives.
+        -1 in a query.
     """
 
     distance: float
@@ -58,6 +61,7 @@ class NearestPair(NamedTuple):
     parameters_b: tuple[float, ...]
     pieces: tuple[str, str] = ("", "")
     patch: tuple[PointPair, ...] = ()
+    branch: int = -1
 
 
 class Continuum(NamedTuple):

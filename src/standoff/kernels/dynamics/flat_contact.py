@@ -11,8 +11,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from standoff.kernels.algebra.frames import Frame, frame_across
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import cross, dot, scale, unit
+from standoff.kernels.algebra.vectors import dot, scale
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.dynamics.arrays import bodies_of
 from standoff.kernels.dynamics.flat_parts import (
@@ -26,7 +27,6 @@ from standoff.kernels.dynamics.flat_parts import (
     flat_part,
 )
 from standoff.kernels.tolerances import FLAT_TILT
-from standoff.kernels.values import Vector
 
 # Corners of a square carry a whole spring each, so one that tips onto an edge or a corner goes on
 # with the springs it had; other areas share out as much by the lengths of their sides.
@@ -39,14 +39,6 @@ N_SPOTS = 12 * MAX_SPOTS
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-class Frame(NamedTuple):
-    """Axes across the normal, and the normal, in A's frame."""
-
-    e: Vector
-    f: Vector
-    n: Vector
-
-
 class Shared(NamedTuple):
     """What two flat parts share."""
 
@@ -56,17 +48,6 @@ class Shared(NamedTuple):
     a: Flat
     b: Flat
     frame: Frame
-
-
-@kernel
-def frame_across(n):
-    small = (1.0, 0.0, 0.0)
-    if abs(n[1]) <= abs(n[0]) and abs(n[1]) <= abs(n[2]):
-        small = (0.0, 1.0, 0.0)
-    elif abs(n[2]) <= abs(n[0]) and abs(n[2]) <= abs(n[1]):
-        small = (0.0, 0.0, 1.0)
-    e = unit(cross(small, n))
-    return Frame(e, cross(n, e), n)
 
 
 @kernel

@@ -26,6 +26,7 @@ MODULES = (
     "standoff.kernels.entries.world_answers",
     "standoff.kernels.entries.planar_solids",
     "standoff.kernels.entries.solids",
+    "standoff.kernels.entries.minima",
     "standoff.kernels.entries.tracked_solids",
 )
 """The modules that have entries."""
@@ -75,9 +76,11 @@ def prepare_servo() -> None:
 
 def prepare_tracked_solids() -> None:
     """Prepare what calls frames of two solids, and queries from nothing."""
-    from standoff.kernels.entries import solids, tracked_solids
+    from standoff.kernels.entries import minima, solids, tracked_solids
 
-    _prepare_each([tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point])
+    needed = [tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point]
+    needed += [tracked_solids.number_minima, minima.stationary, minima.one_place]
+    _prepare_each([*needed, minima.span_patches])
 
 
 def _prepare_each(needed: Sequence[Any]) -> None:

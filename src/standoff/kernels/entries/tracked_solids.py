@@ -7,8 +7,19 @@ from numba import types
 from standoff.kernels.algebra.rigid import unit_quaternion
 from standoff.kernels.algebra.vectors import norm
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
-from standoff.kernels.compiler.entry import INTS, READ, READ_ROWS, ROWS, WRITE, WRITE_INTS
+from standoff.kernels.compiler.entry import (
+    INT,
+    INTS,
+    READ,
+    READ_ROWS,
+    REAL,
+    ROWS,
+    WRITE,
+    WRITE_INTS,
+)
+from standoff.kernels.entries.minima import BOTH_FANS, fans_at
 from standoff.kernels.entries.solids import SOLIDS, STILL, side_at
+from standoff.kernels.solids.front_branches import branch_reach, number_sets, renew_branches
 from standoff.kernels.solids.front_frame import (
     FARTHEST_AHEAD,
     FARTHEST_GONE,
@@ -29,6 +40,8 @@ from standoff.kernels.solids.front_rows import (
     Travel,
     begin_motion,
 )
+from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, gather
+from standoff.kernels.solids.patch import span_all
 from standoff.kernels.solids.spatial_pieces import leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
@@ -51,11 +64,11 @@ from standoff.kernels.solids.spatial_progress import (
 from standoff.kernels.solids.spatial_tolerances import MOTION_SPARE
 
 # What a frame tells: how it ended, distance, bound, motion, both points, leaves and parameters,
-# rows of the front, evaluations, 1 where the front was made anew, and 1 where the solids are sure
-# to be apart because they were, and have not moved so far.
+# rows of the front, evaluations, 1 where the front was made anew, 1 where the solids are sure
+# to be apart because they were, and have not moved so far, and how many local minima are told.
 ENDED, DISTANCE, BOUND, MOTION, POINT_A, POINT_B, LEAVES, PARAMETERS = 0, 1, 2, 3, 4, 7, 10, 12
-ROWS_TOLD, TAKEN, ANEW, SURE = 16, 17, 18, 19
-TOLD_REALS = 20
+ROWS_TOLD, TAKEN, ANEW, SURE, N_SETS = 16, 17, 18, 19, 20
+TOLD_REALS = 21
 N_COUNTS = 5
 # How it ended: proven and at one place; several places, or what may be, to be looked for; not
 # proven; and met, or not known to be apart, so that a query from nothing is to decide.
@@ -87,15 +100,37 @@ def how_ended(a, b, best, minima, low, counts):
         return INTERVAL if evaluations(counts) > best[BUDGET] else TO_ASK
     if low < best[LEAST] - best[TOLERANCE]:
         return INTERVAL
-    single = best[ABOVE] == 0.0 and is_single(a, b, best, minima)
-    return SINGLE if single else SEVERAL
+    return SINGLE if is_single(a, b, best, minima) else SEVERAL
+
+
+@kernel
+def front_at(front):
+    store, keys, rows, branches = front
+    most = len(rows) // ROW_REALS
+    return Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), most, pointer(branches, 0))
+
+
+@kernel
+def told_minima(a, b, fans, front, travel, best, minima, sets):
+    """Write the local minima, their branches and patches; how many, -1 where they are to be looked
+    for."""
+    if best[LOST] > 0.0:
+        return -1
+    n = gather(a, b, fans, best, minima, travel.wider, sets)
+    if n > 0 and travel.wider > 0.0:
+        span_all(best, minima, travel.wider, sets, n)
+    if n > 0:
+        number_sets(front, minima, sets, n, branch_reach(best[SIZE], travel.ahead))
+        renew_branches(front, minima, sets, n)
+    return n
 
 
 @kernel
 def ask(best, asked, away):
     """What is asked of a frame, at how far the solids' frames are from each other. In `asked` stand
-    the tolerance, the share of the sizes and the distance that is for rounding, and up to which
-    distance local minima are kept; 0: only the nearest pairs."""
+    the tolerance, the share of the sizes and the distance that is for rounding, up to which
+    distance local minima are kept, 0: only the nearest pairs, and how much of that is for their
+    patches alone."""
     best[ROUNDING] = asked[1] * (best[SIZE] + away)
     best[TOLERANCE] = max(asked[0], 4.0 * best[ROUNDING])
     best[MEETING], best[ABOVE] = best[TOLERANCE], asked[2]
@@ -108,20 +143,36 @@ def ask(best, asked, away):
 WAY = types.Tuple((READ, READ_ROWS, READ))
 # As `boundary_distance` has them: where the witness points were stands in the first.
 SEARCH = types.Tuple((WRITE, WRITE))
-# What is kept beside the rows of the front, their keys, the rows.
-FRONT_ARRAYS = types.Tuple((WRITE, WRITE, WRITE))
+# What is kept beside the rows of the front, their keys, the rows, the branches.
+FRONT_ARRAYS = types.Tuple((WRITE, WRITE, WRITE, WRITE))
 
 
-@entry(SOLIDS, WAY, INTS, SEARCH, FRONT_ARRAYS, WRITE_INTS, ROWS, work="solids")
-def solid_frames(solids, way, senses, search, front, counts, told):
-    """Frames one after the other into the rows of `told`, up to one that does not end SINGLE, or in
-    which the solids are not sure to be apart; how many were done."""
+@entry(FRONT_ARRAYS, WRITE, WRITE, INT, REAL, work="solids")
+def number_minima(front, minima, sets, n, reach):
+    """Give `n` local minima that were told otherwise the numbers of their branches."""
+    kept, rows, out = front_at(front), pointer(minima, 0), pointer(sets, 0)
+    number_sets(kept, rows, out, n, reach)
+    renew_branches(kept, rows, out, n)
+
+
+# What frames tell: a row each, and of all together the local minima.
+TOLD = types.Tuple((ROWS, WRITE))
+
+
+@entry(SOLIDS, WAY, INTS, SEARCH, BOTH_FANS, FRONT_ARRAYS, WRITE_INTS, TOLD, work="solids")
+def solid_frames(solids, way, senses, search, fans, front, counts, out_arrays):
+    """Frames one after the other into the rows of `told`, up to one that does not end SINGLE, in
+    which the solids are not sure to be apart, or after which there is no room for local minima; how
+    many were done."""
+    told, told_sets = out_arrays
+    around = fans_at(fans[0]), fans_at(fans[1])
+    n_sets = 0
     before, poses, asked = way
     a = side_at(solids[0], STILL, senses[0])
     last = side_at(solids[1], before, senses[1])
     low = before[13]
-    store, keys, rows = front
-    kept = Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), len(rows) // ROW_REALS)
+    store = front[0]
+    kept = front_at(front)
     best, minima, c = pointer(search[0], 0), pointer(search[1], 0), pointer(counts, 0)
     for i in range(len(poses)):
         now = side_at(solids[1], poses[i], senses[1])
@@ -134,8 +185,10 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
         afar = far_side(a, now, radius)
         turn, spare = unit_quaternion(now.pose.R), rounding_of(now, best[SIZE])
-        gone, turning = store[GONE], 1.0 / radius
-        travel = Travel(gone, ahead, radius, turning, afar, sure, now.pose, turn, spare, asked[2])
+        gone, turning, above, wider = store[GONE], 1.0 / radius, asked[2], asked[3]
+        travel = Travel(
+            gone, ahead, radius, turning, afar, sure, now.pose, turn, spare, above, wider
+        )
         ask(best, asked, norm(now.pose.p))
         for k in range(N_COUNTS):
             c[k] = 0
@@ -147,8 +200,15 @@ def solid_frames(solids, way, senses, search, front, counts, told):
         out = pointer(told, TOLD_REALS * i)
         tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)
         out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], c), step
-        out[ANEW], out[SURE] = 1.0 if anew else 0.0, 1.0 if sure else 0.0
+        out[ANEW], out[SURE], out[N_SETS] = 1.0 if anew else 0.0, 1.0 if sure else 0.0, 0.0
+        if best[ABOVE] > 0.0 and out[ENDED] == SINGLE:
+            at = pointer(told_sets, SET_REALS * n_sets)
+            n = told_minima(a, now, around, kept, travel, best, minima, at)
+            out[N_SETS], n_sets = max(n, 0), n_sets + max(n, 0)
+            if n < 0:
+                out[ENDED] = SEVERAL
         last, low = now, out[BOUND]
-        if out[ENDED] != SINGLE or not sure:
+        full = SET_REALS * (n_sets + MOST_SETS) > len(told_sets)
+        if out[ENDED] != SINGLE or not sure or full:
             return i + 1
     return len(poses)

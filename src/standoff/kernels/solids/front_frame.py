@@ -7,6 +7,7 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack, small
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.front_branches import follow_branches
 from standoff.kernels.solids.front_close import tied
 from standoff.kernels.solids.front_look import descend, settle_row
 from standoff.kernels.solids.front_minima import find_minima
@@ -147,6 +148,7 @@ def frame(a, b, front, travel, best, minima, counts):
         make_front(front)
     above = best[ABOVE]
     if above > 0.0:
+        follow_branches(a, b, front, best, minima, counts)
         find_minima(a, b, front, travel, best, minima, counts)
         best[ABOVE] = 0.0  # what is to be proven does not depend on it
     k = 0

@@ -4,15 +4,17 @@ What is proven of a pair that is farther apart than the nearest points is no mor
 so that minima cost a frame little; each has the bound that its pair of pieces has.
 """
 
-from standoff.kernels.algebra.vectors import dot, norm, sub
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids.front_branches import steepest_side
 from standoff.kernels.solids.front_close import LEAVES_AHEAD, keep_proven
 from standoff.kernels.solids.front_look import bound_leaves, descend, look_at_nodes, parts_of_row
 from standoff.kernels.solids.front_motion import carry_row
 from standoff.kernels.solids.front_rows import (
     KEPT,
+    KEY_REALS,
     N_ROWS,
     OPEN_ROW,
+    RESTS_TO,
     ROW_A,
     ROW_REALS,
     ROW_WAY,
@@ -20,7 +22,6 @@ from standoff.kernels.solids.front_rows import (
     open_up,
 )
 from standoff.kernels.solids.spatial_closing import FEW_BOXES, aimed, closed_to
-from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BUDGET,
@@ -35,6 +36,9 @@ from standoff.kernels.solids.spatial_progress import (
 )
 from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
 
+# Of the motion that could level a slope.
+RESTS = 0.25
+
 
 @kernel
 def find_minima(a, b, front, travel, best, minima, counts):
@@ -43,9 +47,10 @@ def find_minima(a, b, front, travel, best, minima, counts):
     k = 0
     while k < int(front.store[N_ROWS]) and best[MET] == 0.0:
         told = KEPT
-        if is_due(front, k, farthest(best), travel):
+        rests = front.keys[KEY_REALS * k + RESTS_TO] > travel.gone
+        if not rests and is_due(front, k, farthest(best), travel):
             carry_row(front, k, farthest(best) + best[ROUNDING], travel)
-        if is_due(front, k, farthest(best), travel):
+        if not rests and is_due(front, k, farthest(best), travel):
             if evaluations(counts) > best[BUDGET]:
                 best[LOST] += 1.0
                 return
@@ -67,7 +72,8 @@ def find_in_leaves(a, b, front, k, travel, best, minima, counts):
         return told
     pa, pb = parts_of_row(a, b, front, k)
     q, distance = descend(a, b, front, k, best, minima, counts)
-    if distance <= farthest(best) and is_level_at_cut(pa, pb, q, distance) and on_both(pa, pb, q):
+    rest_at_side(front, k, pa, pb, q, distance, travel)
+    if distance <= farthest(best) and is_level_at_cut(pa, pb, q) and on_both(pa, pb, q):
         keep(best, minima, pa, pb, q, distance)
     goal = best[ABOVE] + best[ROUNDING]
     if best[MET] > 0.0 or distance <= goal:
@@ -82,22 +88,21 @@ def find_in_leaves(a, b, front, k, travel, best, minima, counts):
 
 
 @kernel
-def is_level_at_cut(a, b, q, distance):
+def rest_at_side(front, k, a, b, q, distance, travel):
+    """A row where Newton's method came to a side beyond which the points are nearer rests for a
+    part of the motion that could level the slope there: by a motion m the direction between two
+    points turns by m over their distance, and B's tangents by m over B's radius. Branches are
+    followed all the same; with patches no row rests, as its points may be one's corner."""
+    sine = steepest_side(a, b, q, False)[0]
+    if travel.wider == 0.0 and sine > HELD_SLOPE and distance > 0.0:
+        far = RESTS * sine / (1.0 / distance + travel.turn)
+        front.keys[KEY_REALS * k + RESTS_TO] = travel.gone + far
+
+
+@kernel
+def is_level_at_cut(a, b, q):
     """Is a pair at a side where a leaf was cut, and no nearer along any way across such a side? It
     is then a minimum of the parts on both sides, which `keep_found` leaves out."""
     if not (at_cut(a, q[0], q[1]) or at_cut(b, q[2], q[3])):
         return False
-    ja, jb = leaf_jet(a.side, a.leaf, q[0], q[1]), leaf_jet(b.side, b.leaf, q[2], q[3])
-    delta = sub(jb[0], ja[0])
-    for i in range(4):
-        part, jet = (a, ja) if i < 2 else (b, jb)
-        u, v = (q[0], q[1]) if i < 2 else (q[2], q[3])
-        box, whole = part.box, leaf_box(part.side, part.leaf)
-        if i % 2 == 0:
-            held = (u <= box.u0 and box.u0 > whole.u0) or (u >= box.u1 and box.u1 < whole.u1)
-        else:
-            held = (v <= box.v0 and box.v0 > whole.v0) or (v >= box.v1 and box.v1 < whole.v1)
-        tangent = jet[1 + i % 2]
-        if held and abs(dot(delta, tangent)) > HELD_SLOPE * norm(tangent) * distance:
-            return False
-    return True
+    return steepest_side(a, b, q, True)[0] <= HELD_SLOPE

@@ -30,22 +30,25 @@ UNSEEN, NO_WAY = -2.0, -1.0
 # What became of a row: it stays as it is, its parts are in its place, or it is gone; or more is to
 # be done.
 KEPT, CUT, GONE_ROW, OPEN_ROW = 0, 1, 2, 3
-# Of each row two numbers: bound and shut, both plus the motion when they were proven.
-KEY_REALS = 2
+# Of each row three numbers: bound and shut, both plus the motion when they were proven; and up to
+# which motion Newton's method is not run for local minima alone.
+KEY_REALS, RESTS_TO = 3, 2
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
 # the front had when it was made, how many frames there were, 1 until a front that is being made
-# has no open rows, and how many evaluations it took to make it.
-N_ROWS, GONE, N_MADE, FRAME, MAKING, COST = 0, 1, 2, 3, 4, 5
-STORE_REALS = 6
+# has no open rows, and how many evaluations it took to make it; how many branches there are, and
+# what the next new one is called.
+N_ROWS, GONE, N_MADE, FRAME, MAKING, COST, N_BRANCHES, NEXT_BRANCH = 0, 1, 2, 3, 4, 5, 6, 7
+STORE_REALS = 8
 
 
 class Front(NamedTuple):
-    """The rows, and room for `most` of them."""
+    """The rows, and room for `most` of them; the branches (``front_branches``)."""
 
     store: Any
     keys: Any
     rows: Any
     most: Any
+    branches: Any
 
 
 class Travel(NamedTuple):
@@ -63,6 +66,7 @@ class Travel(NamedTuple):
     quaternion : of B's turn.
     spare : for the rounding of a shift, length.
     above : local minima are kept up to this distance, length; a plane's face shuts none out.
+    wider : how much of that is for their patches alone, length.
     """
 
     gone: Any
@@ -75,6 +79,7 @@ class Travel(NamedTuple):
     quaternion: Any
     spare: Any
     above: Any
+    wider: Any
 
 
 @kernel
@@ -104,6 +109,7 @@ def put_row(front, k, i, j, box_a, box_b, bound):
     r[o + ROW_FRAME], r[o + ROW_WAY] = -1.0, UNSEEN
     r[o + ROW_LOW], r[o + ROW_FREE] = -inf, -inf
     front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1] = bound, -inf
+    front.keys[KEY_REALS * k + RESTS_TO] = -inf
 
 
 @kernel

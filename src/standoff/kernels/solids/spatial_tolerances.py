@@ -51,6 +51,8 @@ ONE_PLACE: Final = 1e-6
 FLAT_VALLEY: Final = 1e-6
 """Relative, of squared tangents: where the square of the distance bends less than this along a
 direction, the nearest pairs may be a continuum, which is then looked for."""
+PAST_SIDE: Final = 1e-9
+"""Of a leaf: how far beyond its side the next one is looked for, some roundings of a parameter."""
 HELD_SLOPE: Final = 1e-6
 """Sine: a parameter at the side of a leaf is held there if the distance's slope is more."""
 MOTION_SPARE: Final = 1e-14
@@ -67,3 +69,10 @@ than the whole is taken to have it if it is this near."""
 STEEP_FLANK: Final = 0.2
 """Ratio: a normal with less along a screw's axis than this of what it has across it is a crest's or
 a root's, and no flank's."""
+SAME_BASIN: Final = 1e-2
+"""Of the sizes: a pair this near to a nearer one lies in the same valley, cut at the side of
+a leaf."""
+VALLEY: Final = 1e-14
+"""Of the sizes: pairs that differ by less in their distance are as near as each other."""
+ONE_PATCH: Final = 0.95
+"""Cosine, of 18 degrees: pairs of points whose normals differ by more belong to no one patch."""

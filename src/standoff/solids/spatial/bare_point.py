@@ -23,7 +23,7 @@ class BarePoint(SolidModel):
         self.leaves = [vertex_leaf(body, 0)]
         self.edges_sampled = ()
         self.vertex_normals = {}
-        self.vertex_fans = {}
+        self.vertex_fans = None
         self.references = np.zeros((1, 3))
 
     @property

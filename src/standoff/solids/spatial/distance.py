@@ -107,7 +107,7 @@ def spatial_distance(
             f"No pair of points of {pair.a!r} and {pair.b!r} was found: the normals of a boundary "
             "may be wrong; report the pair with its poses."
         )
-    return told_apart(pair, found, senses, inside, sought)
+    return told_apart(pair, found, senses, inside, sought)[0]
 
 
 def reach_of_minima(minima: float | None, patch: float | None) -> tuple[float, bool, int, float]:
@@ -173,7 +173,8 @@ def told_apart(
     senses: tuple[int, int],
     inside: Inside,
     sought: Sought,
-) -> SolidProximity:
+) -> tuple[SolidProximity, list[Place]]:
+    """The answer where the solids are apart, and the places of its minima."""
     places = _places(pair, found, senses, sought.above)
     patches: list[tuple[PointPair, ...]] = []
     if sought.patch > 0.0:
@@ -204,7 +205,7 @@ def told_apart(
         smoothness = UNDEFINED
     left, n_left = ((), 0) if proven else open_pairs(pair, found)
     told = Told(status, smoothness, continuum, None, inside, left, n_left, patches)
-    return answer_of(pair, found, places, told)
+    return answer_of(pair, found, places, told), places
 
 
 def _smoothness(near: list[Place], continuum: Continuum | None) -> Smoothness:

@@ -92,7 +92,7 @@ class HalfSpaceBeside(SolidModel):
         self.boundary, self.own, self.numbers, self.leaves = square
         self.edges_sampled = ()
         self.vertex_normals = {}
-        self.vertex_fans = {}
+        self.vertex_fans = None
         self.references = np.zeros((0, 3))
         self._given, self._origins = whole.boundary, {}
         self._whole, self._half = whole, half

@@ -11,13 +11,13 @@ import numpy as np
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.solids.spatial_progress import BOUND
+from standoff.kernels.solids.spatial_tolerances import SURE_NORMAL, VALLEY
 from standoff.solids.spatial.minimum import Found, leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import distance_to_boundary
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import is_same
-from standoff.solids.spatial.tolerances import HAS_DIRECTION
 
 # Where between two pairs the boundaries are looked at: what is half way may be on another piece of
 # them by symmetry.
@@ -36,8 +36,8 @@ def local_minima(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> lis
     def joined(place: Place, other: Place) -> bool:
         return _are_joined(pair, place, other, found.tolerance)
 
-    single = [_best(each) for each in _sets(places, same)]
-    return [_best(each) for each in _sets(single, joined)]
+    single = [_best(pair, each) for each in _sets(places, same)]
+    return [_best(pair, each) for each in _sets(single, joined)]
 
 
 def _sets(places: list[Place], are_one: Callable[[Place, Place], bool]) -> list[list[Place]]:
@@ -55,10 +55,18 @@ def _sets(places: list[Place], are_one: Callable[[Place, Place], bool]) -> list[
     return sets
 
 
-def _best(places: list[Place]) -> Place:
-    """The nearest of some that are one, with the best bound that any of their pieces has."""
-    best = min(places, key=lambda place: place.distance)
+def _best(pair: PlacedPair, places: list[Place]) -> Place:
+    """The nearest of some that are one, with the best bound that any of their pieces has; of those
+    as near up to rounding the one on features with the fewest parameters."""
+    least = min(place.distance for place in places)
+
+    def rank(place: Place) -> tuple[bool, int]:
+        dims = (solid.leaves[int(place.row[1 + k])].dim for k, solid in enumerate((pair.a, pair.b)))
+        return place.distance > least + VALLEY * pair.size, sum(dims)
+
+    best = min(places, key=rank)
     row = best.row.copy()
+    row[0] = least
     row[BOUND] = max(float(place.row[BOUND]) for place in places)
     return replace(best, row=row)
 
@@ -104,4 +112,4 @@ def _between(solid: SolidModel, side: int, row: Array, other: Array, share: floa
     ]
     spot = (1.0 - share) * ends[0] + share * ends[1]
     off = distance_to_boundary(solid, spot).upper
-    return np.asarray(spot) if off <= HAS_DIRECTION * solid.size else None
+    return np.asarray(spot) if off <= SURE_NORMAL * solid.size else None

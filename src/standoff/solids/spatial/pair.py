@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import islice
 
 import numpy as np
@@ -11,6 +12,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import gradient, nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_progress import BOUND
+from standoff.kernels.solids.spatial_tolerances import SURE_NORMAL
 from standoff.motion.pose import Pose
 from standoff.solids.answer import NearestPair
 from standoff.solids.spatial.half_space import of_pair
@@ -20,7 +22,6 @@ from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import (
     COLLAPSED_FRAME,
-    HAS_DIRECTION,
     LEAST_LENGTH,
     PROOF_ROUNDING,
 )
@@ -41,6 +42,11 @@ class Place:
     @property
     def distance(self) -> float:
         return float(self.row[0])
+
+    @cached_property
+    def spot(self) -> Array:
+        """Both points and the distance (7,)."""
+        return np.array([*self.point_a, *self.point_b, self.row[0]])
 
 
 class PlacedPair:
@@ -113,7 +119,7 @@ class PlacedPair:
         y = leaf_jet_of(self.b.packed, leaf_b, row[5], row[6])[0] @ self.rb.T + self.pb
         away = y - x
         length = float(np.linalg.norm(away))
-        told = length > HAS_DIRECTION * self.size
+        told = length > SURE_NORMAL * self.size
         normal = away / length if told else self._normal_at(row, senses)
         return Place(row, x, y, normal)
 

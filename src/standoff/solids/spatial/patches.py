@@ -1,17 +1,24 @@
-"""The patch of a local minimum: a few pairs of points that span where the gap is hardly wider."""
+"""The patches of local minima, as ``kernels.solids.patch`` spans them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
+from standoff.kernels.entries.minima import span_patches
+from standoff.kernels.solids import spatial_progress as C
+from standoff.kernels.solids.minima_sets import (
+    SET_BRANCH,
+    SET_PAIRS,
+    SET_POINTS,
+    SET_REALS,
+    SET_ROW,
+)
 from standoff.solids.answer import PointPair
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.tolerances import ONE_PATCH, SAME_NEAREST
 
 
 def patches_of(
@@ -24,63 +31,31 @@ def patches_of(
     """Of each local minimum up to four pairs out of those that were found: those whose distance is
     from its own to `wider` more, along nearly the same normal, and nearer to it than to any other
     minimum. Its own is one of them, unless others are as near and span the rest."""
-    spots = np.array([_middle(each) for each in minima]).reshape(-1, 3)
-    normals = np.array([each.normal for each in minima]).reshape(-1, 3)
-    mine: list[list[Place]] = [[each] for each in minima]
-    for row in found.minima:
-        other = pair.place(row, senses)
-        away = np.linalg.norm(spots - _middle(other), axis=1)
-        away[normals @ other.normal < ONE_PATCH] = np.inf
-        k = int(np.argmin(away))
-        if away[k] == np.inf:
-            continue
-        more = other.distance - minima[k].distance
-        if -found.tolerance <= more <= wider:
-            mine[k].append(other)
-    return [_spanning(each, SAME_NEAREST * pair.size, found.tolerance) for each in mine]
+    rows, sets = rows_of(pair, minima, [pair.place(row, senses) for row in found.minima])
+    best = np.zeros(C.BEST_REALS)
+    best[C.N_MINIMA], best[C.SIZE], best[C.TOLERANCE] = len(rows), pair.size, found.tolerance
+    span_patches(best, rows.ravel(), wider, sets.ravel(), len(minima))
+    return [patch_told(pair, row) for row in sets]
 
 
-def _middle(place: Place) -> Array:
-    return np.asarray(0.5 * (place.point_a + place.point_b))
+def rows_of(
+    pair: PlacedPair, minima: Sequence[Place], others: Sequence[Place] = ()
+) -> tuple[Array, Array]:
+    """Local minima as the kernels have them: rows (n, 15) of these and of other pairs, and of sets
+    (m, 41)."""
+    places = [*minima, *others]
+    rows = np.zeros((len(places), C.MINIMUM_REALS))
+    for row, place in zip(rows, places, strict=True):
+        row[: C.POINTS] = place.row[: C.POINTS]
+        row[C.POINTS : C.BRANCH] = [*pair.in_a(place.point_a), *pair.in_a(place.point_b)]
+    sets = np.zeros((len(minima), SET_REALS))
+    for k, place in enumerate(minima):
+        sets[k, : C.POINTS], sets[k, SET_ROW], sets[k, SET_BRANCH] = place.row[: C.POINTS], k, -1.0
+    return rows, sets
 
 
-def _spanning(places: Sequence[Place], least: float, tie: float) -> tuple[PointPair, ...]:
-    """Up to four, each farthest outside of those taken before."""
-    n = places[0].normal
-    e1 = np.cross(n, np.eye(3)[int(np.argmin(np.abs(n)))])
-    e1 = e1 / np.linalg.norm(e1)
-    spots = np.array([_middle(each) for each in places])
-    flat = (spots - spots[0]) @ np.array([e1, np.cross(n, e1)]).T
-    away = np.linalg.norm(flat, axis=1)
-    away[[each.distance > places[0].distance + tie for each in places]] = 0.0
-    first = int(np.argmax(away))
-    taken = [first if away[first] > least else 0]
-    for _ in range(3):
-        outside = _outside(flat[taken], flat)
-        k = int(np.argmax(outside))
-        if outside[k] <= least:
-            break
-        taken = _around(flat, [*taken, k])
-    return tuple((places[k].point_a, places[k].point_b) for k in taken)
-
-
-def _around(flat: Array, taken: list[int]) -> list[int]:
-    """In their order around their middle, counterclockwise."""
-    if len(taken) < 3:
-        return taken
-    away = flat[taken] - flat[taken].mean(axis=0)
-    return [taken[k] for k in np.argsort(np.arctan2(away[:, 1], away[:, 0]))]
-
-
-def _outside(corners: Array, spots: Array) -> NDArray[np.float64]:
-    """How far points are from a point, from a line, or outside of a convex polygon."""
-    if len(corners) == 1:
-        return np.asarray(np.linalg.norm(spots - corners[0], axis=1))
-    sides = np.roll(corners, -1, axis=0) - corners
-    sides = sides / np.linalg.norm(sides, axis=1)[:, None]
-    away = spots[:, None] - corners[None]
-    across = away[..., 1] * sides[:, 0] - away[..., 0] * sides[:, 1]
-    if len(corners) == 2:
-        along = np.maximum(-away[:, 0] @ sides[0], -away[:, 1] @ sides[1])
-        return np.asarray(np.maximum(np.abs(across[:, 0]), along))
-    return np.asarray((-across).max(axis=1))
+def patch_told(pair: PlacedPair, row: Array) -> tuple[PointPair, ...]:
+    """Of a row of sets its patch, world points."""
+    count = int(row[SET_PAIRS])
+    points = row[SET_POINTS : SET_POINTS + 6 * count].reshape(-1, 3) @ pair.ra.T + pair.pa
+    return tuple((points[2 * k], points[2 * k + 1]) for k in range(count))

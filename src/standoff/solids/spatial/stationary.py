@@ -1,19 +1,19 @@
-"""Which pairs of points are local minima of the distance of two boundaries, to first order.
-
-At one no direction into a boundary leads towards the other point. The directions are those of a
-face's tangents, of an edge and into its faces, of the corners and edges of a vertex.
-"""
+"""Which pairs of points are local minima of the distance of two boundaries, to first order, as
+``kernels.solids.stationary`` asks it."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections import defaultdict
 
 import numpy as np
+from numpy.typing import NDArray
 
+from standoff.bodies.tessellation import chart_row
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import coedge_conormal
+from standoff.kernels.entries.minima import stationary
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
+from standoff.kernels.solids.stationary import FAN_INTS
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.sides import corner_of
@@ -27,73 +27,72 @@ WAYS_AROUND = 17
 def is_stationary(pair: PlacedPair, place: Place, sine: float = AT_OPTIMUM) -> bool:
     """Can no small step on either boundary make a pair nearer along its normal, to first order?
     `sine`: of the angle by which one may."""
-    n, row = place.normal, place.row
-    return (
-        _steepest(pair.a, int(row[1]), row[3:5], pair.ra.T @ n) <= sine
-        and _steepest(pair.b, int(row[2]), row[5:7], -pair.rb.T @ n) <= sine
-    )
+    solids, fans = (pair.a.packed, pair.b.packed), (fans_of(pair.a), fans_of(pair.b))
+    asked = np.array([*(pair.ra.T @ place.normal), sine])
+    return bool(stationary(solids, pair.relative, fans, place.row, asked))
 
 
-def _steepest(solid: SolidModel, leaf: int, at: Array, n: Array) -> float:
-    """The greatest component along n, own frame, of a unit direction into the boundary from a
-    leaf's point."""
-    part = solid.leaves[leaf]
-    jet = leaf_jet_of(solid.packed, leaf, float(at[0]), float(at[1]))
-    if part.dim == 2:
-        normal = np.cross(jet[1], jet[2])
-        size = float(np.linalg.norm(normal))
-        return float(np.linalg.norm(np.cross(n, normal))) / size if size > 0.0 else 1.0
-    if part.dim == 0:
-        return _steepest_at_vertex(solid, part.feature, n)
-    size = float(np.linalg.norm(jet[1]))
-    if size == 0.0:
-        return 1.0
-    along = jet[1] / size
-    ints, reals = solid.boundary.ints, solid.boundary.reals
-    row = int(ints[L.EDGES]) + L.EDGE_STRIDE * (part.feature - solid.boundary.n_faces)
-    tangent = (float(along[0]), float(along[1]), float(along[2]))
-    ways = [
-        np.array(coedge_conormal(ints, reals, int(ints[row + k]), tangent, float(at[0]))[0])
-        for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1)
-    ]
-    return max(abs(float(along @ n)), *(float(way @ n) for way in ways))
+Fans = tuple[NDArray[np.int64], Array]
+"""The directions into a boundary from its vertices, as the kernel lays them out."""
+
+NONE: Fans = (np.empty(0, dtype=np.int64), np.empty(0))
 
 
-class Fan(NamedTuple):
-    """The directions into a boundary from a vertex, own frame.
-
-    Attributes
-    ----------
-    ways : (n, 3) array
-        Unit ones, along edges and into faces from collapsed sides.
-    corners : (m, 3, 3) array
-        Of each face's corner: the edge that leaves it, what is a quarter turn from there, and the
-        one that arrives.
-    angles : (m,) array
-        From the first to the last, counterclockwise, radians.
-    """
-
-    ways: Array
-    corners: Array
-    angles: Array
+def fans_of(solid: SolidModel) -> Fans:
+    """The directions into a boundary from its vertices, own frame; made once."""
+    if solid.vertex_fans is None:
+        has_vertices = any(leaf.dim == 0 for leaf in solid.leaves)
+        solid.vertex_fans = _packed(solid) if has_vertices else NONE
+    found: Fans = solid.vertex_fans
+    return found
 
 
-def _steepest_at_vertex(solid: SolidModel, feature: int, n: Array) -> float:
-    number = feature - solid.boundary.n_faces - solid.boundary.n_edges
-    if number not in solid.vertex_fans:
-        solid.vertex_fans[number] = _fan_of(solid, number)
-    fan = solid.vertex_fans[number]
-    found = float((fan.ways @ n).max(initial=-1.0))
-    along = fan.corners @ n
-    turned = np.arctan2(along[:, 1], along[:, 0]) % (2.0 * np.pi)
-    within = turned <= fan.angles
-    flat = np.hypot(along[:, 0], along[:, 1])
-    return max(found, float(flat[within].max(initial=-1.0)))
+def _packed(solid: SolidModel) -> Fans:
+    charts = _charts_at(solid)
+    ints: list[int] = []
+    reals: list[float] = []
+    for vertex in range(solid.boundary.n_vertices):
+        ways, corners = _fan_of(solid, vertex, charts[vertex])
+        for rows in (ways, corners):
+            ints += [len(reals), len(rows)]
+            reals += np.ravel(rows).tolist()
+    found = (np.array(ints, dtype=np.int64), np.array(reals))
+    assert len(found[0]) == FAN_INTS * solid.boundary.n_vertices
+    for array in found:
+        array.flags.writeable = False
+    return found
 
 
-def _fan_of(solid: SolidModel, vertex: int) -> Fan:
-    ways, corners, angles = [], [], []
-    for chart in range(int(solid.boundary.ints[L.N_CHARTS])):
+def _charts_at(solid: SolidModel) -> dict[int, list[int]]:
+    """The charts around each vertex."""
+    boundary = solid.boundary
+    found: dict[int, list[int]] = defaultdict(list)
+    for chart in range(int(boundary.ints[L.N_CHARTS])):
+        row = chart_row(boundary, chart)
+        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+        mine: set[int] = set()
+        for coedge in range(first, first + count):
+            at = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+            edge = int(boundary.ints[at + L.COEDGE_EDGE])
+            if edge < 0:
+                mine.add(-1 - edge)
+                continue
+            part = boundary.edge_parts[edge]
+            mine.update(end for end in (part.first, part.last) if end is not None)
+        for vertex in sorted(mine):
+            found[vertex].append(chart)
+    return found
+
+
+def _fan_of(
+    solid: SolidModel, vertex: int, charts: list[int]
+) -> tuple[list[Array], list[list[float]]]:
+    """Of a vertex unit directions along edges and into faces from collapsed sides; and of each
+    face's corner the edge that leaves it, what is a quarter turn from there, and the angle to the
+    one that arrives, counterclockwise."""
+    ways: list[Array] = []
+    corners: list[list[float]] = []
+    for chart in charts:
         out, into, normal = corner_of(solid, chart, vertex)
         if normal is None:
             if into:
@@ -103,11 +102,9 @@ def _fan_of(solid: SolidModel, vertex: int) -> Fan:
         for a, b in zip(out, into, strict=False):
             across = np.cross(outward, a)
             ways += [a, b]
-            corners.append([a, across, b])
-            angles.append(np.arctan2(across @ b, a @ b) % (2.0 * np.pi))
-    return Fan(
-        np.reshape(ways, (-1, 3)), np.reshape(corners, (-1, 3, 3)), np.array(angles, dtype=float)
-    )
+            angle = np.arctan2(across @ b, a @ b) % (2.0 * np.pi)
+            corners.append([*a, *across, float(angle)])
+    return ways, corners
 
 
 def _ways_from_side(solid: SolidModel, chart: int, vertex: int) -> Array:

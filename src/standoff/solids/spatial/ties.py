@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 
 from standoff.geometry.validation import Array
+from standoff.kernels.entries.minima import one_place
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.answer import Continuum
 from standoff.solids.spatial.leaves import Leaf
@@ -17,9 +18,6 @@ from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.tolerances import (
     BENDS_LESS,
     CONTINUUM_LENGTH,
-    SAME_BASIN,
-    SAME_NEAREST,
-    VALLEY,
 )
 
 # How many of the nearest pairs are tried.
@@ -42,12 +40,7 @@ def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
 
 def is_same(place: Place, other: Place, size: float) -> bool:
     """Is a pair another one again, or cut off its valley by the side of a leaf?"""
-    away = max(
-        float(np.linalg.norm(place.point_a - other.point_a)),
-        float(np.linalg.norm(place.point_b - other.point_b)),
-    )
-    farther = place.distance - other.distance > VALLEY * size
-    return away <= (SAME_BASIN if farther else SAME_NEAREST) * size
+    return bool(one_place(place.spot, other.spot, size))
 
 
 def continuum_of(

@@ -16,22 +16,12 @@ SMOOTH_JOIN: Final = 2e-7
 """Radians: faces that join smoothly may differ by this in their normals, twice SMOOTH_ANGLE."""
 CONTINUUM_LENGTH: Final = 1e-3
 """Of the sizes: nearest pairs spread less than this are one."""
-SAME_NEAREST: Final = 1e-6
-"""Of the sizes: pairs of points nearer to each other than this are one, found twice."""
-HAS_DIRECTION: Final = 1e-9
-"""Of the sizes: witness points nearer than this have no direction with seven digits; a face's
-normal takes its place."""
 NO_SIDE: Final = 1e-3
 """Length of a sum of unit normals below which it tells no side."""
 LEADS_NOWHERE: Final = 1e-6
 """Length of a sum of unit gradients below which it leads nowhere."""
 COLLAPSED_FRAME: Final = 1e-6
 """Part of a vector across another below which it gives no direction."""
-SAME_BASIN: Final = 1e-2
-"""Of the sizes: a pair this near to a nearer one lies in the same valley, cut at the side of
-a leaf."""
-VALLEY: Final = 1e-14
-"""Of the sizes: pairs that differ by less in their distance are as near as each other."""
 BENDS_LESS: Final = 3e-3
 """Of its length: a continuum that bends less is a line; pairs within the tolerance of the distance
 lie to both sides of it."""
@@ -109,5 +99,3 @@ MANY_SCREWS: Final = 1e-2
 LEAST_TURN: Final = 1e-2
 """Of a motion whose turn and velocity, over the face's size, have the length 1: below this it is a
 translation."""
-ONE_PATCH: Final = 0.95
-"""Cosine, of 18 degrees: pairs of points whose normals differ by more belong to no one patch."""

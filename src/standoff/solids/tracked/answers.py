@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from standoff.kernels.entries import tracked_solids as T
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
+from standoff.solids.tracked.branches import Branches, BranchEvent
 
 Array = NDArray[np.float64]
 
@@ -44,8 +46,9 @@ class SolidAnswers(KeepsReadOnly):
         special: Mapping[int, SolidProximity],
         plain: tuple[NDArray[np.object_], float],
         make: Callable[[int], SolidProximity],
+        branches: Callable[[], tuple[Branches, tuple[BranchEvent, ...]]],
     ) -> None:
-        self._make, self._special = make, dict(special)
+        self._make, self._special, self._tell = make, dict(special), branches
         self.status, slack = plain
         self.point_a, self.point_b, self.normal = places
         self.distance = told[:, T.DISTANCE].copy()
@@ -70,6 +73,32 @@ class SolidAnswers(KeepsReadOnly):
         self.normal[k] = answer.normal
         self.evaluations[k] = answer.counts.evaluations
         self.restarts[k] = answer.counts.restarts > 0
+
+    @property
+    def branches(self) -> Branches:
+        """All local minima of all frames, in arrays.
+
+        Raises
+        ------
+        StandoffError
+            The tracker was made without ``minima=``.
+        """
+        return self._told[0]
+
+    @property
+    def events(self) -> tuple[BranchEvent, ...]:
+        """Which branches begin, end and go to another feature, and when another is the nearest.
+
+        Raises
+        ------
+        StandoffError
+            The tracker was made without ``minima=``.
+        """
+        return self._told[1]
+
+    @cached_property
+    def _told(self) -> tuple[Branches, tuple[BranchEvent, ...]]:
+        return self._tell()
 
     def __len__(self) -> int:
         return len(self.distance)

@@ -3,19 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
-from standoff.solids.spatial.distance import reach_of_minima, senses_of, spatial_distance
+from standoff.solids.spatial.distance import (
+    Inside,
+    reach_of_minima,
+    senses_of,
+    spatial_distance,
+    told_apart,
+)
 from standoff.solids.spatial.minimum import Sought
 from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.patches import rows_of
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
-from standoff.solids.tracked.front import Frames, Front, front_at, room_for
+from standoff.solids.tracked.front import (
+    NO_MINIMA,
+    Frames,
+    Front,
+    Minima,
+    front_at,
+    room_for,
+)
 
 
 class Asks(NamedTuple):
@@ -41,20 +58,53 @@ class Asks(NamedTuple):
         reach = reach_of_minima(self.options.minima, self.options.patch)
         return Sought(pair.provable(self.proof), self.options.deadline, np.inf, *reach)
 
+    @property
+    def minima(self) -> Minima:
+        """What frames are asked of local minima."""
+        minima, patch = self.options.minima, self.options.patch
+        if minima is None:
+            return NO_MINIMA
+        above = reach_of_minima(minima, patch)[0]
+        return Minima(above, patch or 0.0, (fans_of(self.a), fans_of(self.b)))
+
     def frames(self, front: Front) -> Frames:
         """Frames from a front on."""
-        above = reach_of_minima(self.options.minima, self.options.patch)[0]
         packed = self.a.packed, self.b.packed
-        return Frames(packed, front, self.proof, self.options.deadline, above)
+        return Frames(packed, front, self.proof, self.options.deadline, self.minima)
 
-    def cold(self, pair: PlacedPair) -> tuple[SolidProximity, Front | None]:
-        """An answer from nothing, with the front that frames go on from where there is one."""
+    def cold(self, pair: PlacedPair, born: int = 0) -> tuple[SolidProximity, Front | None]:
+        """An answer from nothing, with the front that frames go on from where there is one. `born`:
+        how many branches there were before."""
         pose_a, pose_b = (Pose.from_checked(row[:9].reshape(3, 3), row[9:]) for row in pair.poses)
         answer = spatial_distance(self.a, self.b, pose_a, pose_b, self.options)
         answer = replace(answer, counts=answer.counts._replace(restarts=1))
         if answer.lower_bound <= 0.0:
             return answer, None
         sought, senses = self.sought(pair), senses_of(answer.inside)
-        frames = self.frames(front_at(pair, pair.least(senses, sought), senses, sought))
+        front = front_at(pair, pair.least(senses, sought), senses, sought, born)
+        frames = self.frames(front)
         frames.go(pair.relative[None], room_for(1))
+        if self.options.minima is not None:
+            numbers = frames.minima[:, SET_BRANCH]
+            if len(numbers) != len(answer.minima):
+                told = self.apart(pair, frames, answer.inside, 0.0)
+                numbers = np.array([each.branch for each in told.minima])
+            if len(numbers) == len(answer.minima):
+                answer = numbered(answer, numbers)
         return answer, frames.kept()
+
+    def apart(
+        self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float
+    ) -> SolidProximity:
+        """The answer of the last frame by what was found in it, after a motion of B, length."""
+        sought = self.sought(pair)
+        answer, places = told_apart(pair, frames.found(), senses_of(inside), inside, sought)
+        if self.options.minima is None:
+            return answer
+        return numbered(answer, frames.number(*rows_of(pair, places), motion))
+
+
+def numbered(answer: SolidProximity, numbers: NDArray[Any]) -> SolidProximity:
+    """With the branches of its minima."""
+    named = zip(answer.minima, numbers, strict=True)
+    return replace(answer, minima=tuple(m._replace(branch=int(k)) for m, k in named))

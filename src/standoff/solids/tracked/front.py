@@ -10,18 +10,42 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels.entries.tracked_solids import BOUND, DISTANCE, TOLD_REALS, solid_frames
+from standoff.kernels.entries.tracked_solids import (
+    BOUND,
+    DISTANCE,
+    N_SETS,
+    TOLD_REALS,
+    number_minima,
+    solid_frames,
+)
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids import spatial_progress as C
-from standoff.kernels.solids.front_rows import KEY_REALS, N_ROWS, ROW_REALS, STORE_REALS
+from standoff.kernels.solids.front_branches import BRANCH_REALS
+from standoff.kernels.solids.front_frame import FRAMES_AHEAD
+from standoff.kernels.solids.front_rows import (
+    KEY_REALS,
+    N_BRANCHES,
+    N_ROWS,
+    NEXT_BRANCH,
+    ROW_REALS,
+    STORE_REALS,
+)
+from standoff.kernels.solids.minima_sets import SET_BRANCH, SET_REALS
+from standoff.kernels.solids.spatial_tolerances import SAME_BASIN
 from standoff.solids.answer import MOST_OPEN
 from standoff.solids.spatial.minimum import MOST_LOCAL, Found, Sought, found_of, started
 from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.stationary import NONE, Fans
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING
 
 Array = NDArray[np.float64]
 MOST_ROWS = 1 << 14
 """Rows that a front may have: more are not cut any further, so that an interval is told."""
+MOST_BRANCHES = 1 << 8
+"""Local minima that are followed from frame to frame; of more the nearest ones."""
+MOST_TOLD = 1 << 11
+"""Local minima that one call of the kernel tells, of all its frames."""
+NO_ROWS = np.empty((0, SET_REALS))
 
 OUTSIDE, INSIDE = S.OUTSIDE, S.INSIDE
 
@@ -37,6 +61,8 @@ class Front(NamedTuple):
         What the kernels were asked, and where the witness points were.
     store, keys, rows : arrays
         As ``kernels.solids.front_rows`` lays them out.
+    branches : array
+        As ``kernels.solids.front_branches`` does.
     senses : (2,) array of int
         From where each boundary is seen.
     """
@@ -46,7 +72,13 @@ class Front(NamedTuple):
     store: Array
     keys: Array
     rows: Array
+    branches: Array
     senses: NDArray[np.int64]
+
+    @property
+    def born(self) -> int:
+        """How many branches there have been."""
+        return int(self.store[NEXT_BRANCH])
 
     @property
     def inside(self) -> Any:
@@ -62,8 +94,28 @@ class Work(NamedTuple):
     store: Array
     keys: Array
     rows: Array
+    branches: Array
     minima: Array
     counts: NDArray[np.int64]
+    sets: Array
+
+
+class Minima(NamedTuple):
+    """What frames are asked of local minima.
+
+    Attributes
+    ----------
+    above : up to which distance they are kept, length; 0: only the nearest pairs.
+    wider : how much of that is for their patches alone, length.
+    fans : of both solids, as ``kernels.solids.stationary`` lays them out.
+    """
+
+    above: float
+    wider: float
+    fans: tuple[Fans, Fans]
+
+
+NO_MINIMA = Minima(0.0, 0.0, (NONE, NONE))
 
 
 @lru_cache(maxsize=8)
@@ -73,25 +125,34 @@ def _room(thread: int) -> Work:
         np.zeros(STORE_REALS),
         np.empty(KEY_REALS * MOST_ROWS),
         np.empty(ROW_REALS * MOST_ROWS),
+        np.empty(BRANCH_REALS * MOST_BRANCHES),
         np.empty(C.MINIMUM_REALS * MOST_LOCAL),
         np.zeros(8, dtype=np.int64),
+        np.empty(SET_REALS * MOST_TOLD),
     )
 
 
-def front_at(pair: PlacedPair, found: Found, senses: tuple[int, int], sought: Sought) -> Front:
-    """A front that is yet to be made, of solids whose nearest points were found."""
+def front_at(
+    pair: PlacedPair, found: Found, senses: tuple[int, int], sought: Sought, born: int = 0
+) -> Front:
+    """A front that is yet to be made, of solids whose nearest points were found. `born`: how many
+    branches there were before."""
     away = float(np.linalg.norm(pair.relative[9:]))
     best, _ = started(sought._replace(listed=MOST_OPEN), pair.size, away)
     best[C.LEAF_A : C.AT + 4] = found.best[1:7]
     before = np.array([*pair.relative, found.upper, found.lower])
     empty = np.empty(0)
-    return Front(
-        before, best, np.zeros(STORE_REALS), empty, empty, np.array(senses, dtype=np.int64)
-    )
+    store = np.zeros(STORE_REALS)
+    store[NEXT_BRANCH] = born
+    return Front(before, best, store, empty, empty, empty, np.array(senses, dtype=np.int64))
 
 
 class Frames:
-    """Frames one after the other from a front on, which stays as it is."""
+    """Frames one after the other from a front on, which stays as it is.
+
+    minima : rows of what the last call told of local minima, as ``kernels.solids.minima_sets`` lays
+    them out, those of each frame one after the other.
+    """
 
     def __init__(
         self,
@@ -99,42 +160,46 @@ class Frames:
         front: Front,
         tolerance: float,
         deadline: int,
-        minima: float = 0.0,
+        minima: Minima = NO_MINIMA,
     ) -> None:
-        self.packed = packed
-        self.asked = np.array([tolerance, PROOF_ROUNDING, minima])
+        self.packed, self.fans = packed, minima.fans
+        self.asked = np.array([tolerance, PROOF_ROUNDING, minima.above, minima.wider])
         self.work = _room(threading.get_ident())
-        store, keys, rows, _, _ = self.work
+        store, keys, rows, branches = self.work[:4]
         self.before, self.best, self.senses = front.before.copy(), front.best.copy(), front.senses
         self.best[C.BUDGET] = deadline
         store[:] = front.store
         keys[: len(front.keys)] = front.keys
         rows[: len(front.rows)] = front.rows
-        if front.best[C.ABOVE] < minima:  # planes' faces may have shut out what is asked now
+        branches[: len(front.branches)] = front.branches
+        if front.best[C.ABOVE] < minima.above:  # planes' faces may have shut out what is asked now
             store[N_ROWS] = 0.0
 
     def go(self, poses: Array, told: Array) -> int:
         """Frames with B at poses (n, 12) in A's frame, into the rows of `told`; how many were
         done."""
-        store, keys, rows, minima, counts = self.work
+        store, keys, rows, branches, minima, counts, sets = self.work
         done = int(
             solid_frames(
                 self.packed,
                 (self.before, poses, self.asked),
                 self.senses,
                 (self.best, minima),
-                (store, keys, rows),
+                self.fans,
+                (store, keys, rows, branches),
                 counts,
-                told,
+                (told, sets),
             )
         )
+        total = int(told[:done, N_SETS].sum())
+        self.minima = sets.reshape(-1, SET_REALS)[:total].copy() if total else NO_ROWS
         self.before[:12] = poses[done - 1]
         self.before[12], self.before[13] = told[done - 1, DISTANCE], told[done - 1, BOUND]
         return done
 
     def kept(self) -> Front:
         """The front after the last frame."""
-        store, keys, rows, _, _ = self.work
+        store, keys, rows, branches = self.work[:4]
         n = int(store[N_ROWS])
         made = Front(
             self.before.copy(),
@@ -142,11 +207,27 @@ class Frames:
             store.copy(),
             keys[: KEY_REALS * n].copy(),
             rows[: ROW_REALS * n].copy(),
+            branches[: BRANCH_REALS * int(store[N_BRANCHES])].copy(),
             self.senses,
         )
         for array in made:
             array.flags.writeable = False
         return made
+
+    @property
+    def born(self) -> int:
+        """How many branches there have been."""
+        return int(self.work.store[NEXT_BRANCH])
+
+    def number(self, rows: Array, sets: Array, motion: float) -> Array:
+        """The branches of local minima that were told otherwise, after a motion, length: their
+        numbers."""
+        n = min(len(sets), MOST_BRANCHES)
+        reach = SAME_BASIN * self.best[C.SIZE] + FRAMES_AHEAD * motion
+        number_minima(self.work[:4], rows.ravel(), sets.ravel(), n, float(reach))
+        numbers = np.full(len(sets), -1, dtype=np.int64)
+        numbers[:n] = sets[:n, SET_BRANCH]
+        return numbers
 
     def found(self) -> Found:
         """What the last frame found, as a search does."""

@@ -8,15 +8,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import StandoffError
 from standoff.kernels.entries import tracked_solids as T
+from standoff.kernels.solids.minima_sets import SET_BRANCH
+from standoff.kernels.solids.spatial_progress import POINTS
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
-from standoff.solids.spatial.distance import Told, answer_of, inside_of, senses_of, told_apart
+from standoff.solids.spatial.distance import Told, answer_of, inside_of, senses_of
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.patches import patch_told
 from standoff.solids.tracked.answers import SolidAnswers, world_places
-from standoff.solids.tracked.asks import Asks
-from standoff.solids.tracked.front import Frames, Front, room_for
+from standoff.solids.tracked.asks import Asks, numbered
+from standoff.solids.tracked.branches import Branches, BranchEvent, branches_of, events_of
+from standoff.solids.tracked.front import NO_ROWS, Frames, Front, room_for
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -28,26 +33,52 @@ class Run:
     """Frames with A and B at world poses (n, 12), from the state of the frame before on."""
 
     def __init__(self, asks: Asks, state: SolidState, a: Array, b: Array) -> None:
-        self.asks, self.state = asks, state
+        self.asks, self.state, self.born = asks, state, state.born
         self.a, self.b = a, b
         self.relative = _relative(a, b)
         self.told = room_for(len(a))
         self.inside = np.full(len(a), "", dtype=object)
         self.special: dict[int, SolidProximity] = {}
+        self.minima, self.first = [NO_ROWS], np.zeros(len(a) + 1, dtype=np.int64)
 
     def single(self) -> tuple[SolidState, SolidProximity]:
         """Of a run of one frame, without arrays."""
         front = self._through()
         answer = self.special[0] if self.special else self._made(0)
-        return SolidState(answer, (self.asks.a, self.asks.b), front), answer
+        return self._state(answer, front), answer
+
+    def _state(self, answer: SolidProximity, front: Front | None) -> SolidState:
+        born = self.born if front is None else front.born
+        return SolidState(answer, (self.asks.a, self.asks.b), front, born)
 
     def answers(self) -> tuple[SolidState, SolidAnswers]:
         front = self._through()
         slack = self.asks.a.slack + self.asks.b.slack
         statuses = np.array([_status(inside) for inside in self.inside], dtype=object)
         places = world_places(self.told, self.a)
-        answers = SolidAnswers(self.told, places, self.special, (statuses, slack), self._made)
-        return SolidState(answers[len(answers) - 1], (self.asks.a, self.asks.b), front), answers
+        plain = statuses, slack
+        answers = SolidAnswers(self.told, places, self.special, plain, self._made, self.branches)
+        return self._state(answers[len(answers) - 1], front), answers
+
+    def branches(self) -> tuple[Branches, tuple[BranchEvent, ...]]:
+        """The local minima of all frames, and what becomes of them.
+
+        Raises
+        ------
+        StandoffError
+            None were asked.
+        """
+        if self.asks.options.minima is None:
+            raise StandoffError(
+                "These frames tell no local minima: give the tracker minima=, a length below which "
+                "they are kept.",
+                "minima",
+                None,
+            )
+        solids, slack = (self.asks.a, self.asks.b), self.asks.a.slack + self.asks.b.slack
+        rows, first = self._all_minima()
+        told = branches_of(solids, rows, first, self.special, self.a, slack)
+        return told, tuple(events_of(told, len(self.a), self.state.proximity))
 
     def _through(self) -> Front | None:
         """All frames; the front after the last."""
@@ -64,8 +95,10 @@ class Run:
         frames = self.asks.frames(front)
         while at < len(self.relative):
             first, at = at, at + frames.go(self.relative[at:], self.told[at:])
+            self.minima.append(frames.minima)
             self.inside[first:at] = front.inside
             if not self._settled(at - 1, frames, front.inside):
+                self.born = frames.born
                 return self._ask(at - 1), at
         return frames.kept(), at
 
@@ -75,7 +108,9 @@ class Run:
 
     def _ask(self, k: int) -> Front | None:
         """A frame from nothing."""
-        self.special[k], front = self.asks.cold(self._pair(k))
+        self.special[k], front = self.asks.cold(self._pair(k), self.born)
+        if front is not None:
+            self.born = front.born
         self.told[k, T.MOTION], self.told[k, T.ANEW] = np.nan, 0.0
         return front
 
@@ -90,8 +125,7 @@ class Run:
         if not row[T.SURE] and inside_of(pair) != inside:
             return False
         if row[T.ENDED] != T.SINGLE:
-            sought, found = self.asks.sought(pair), frames.found()
-            answer = told_apart(pair, found, senses_of(inside), inside, sought)
+            answer = self.asks.apart(pair, frames, inside, float(row[T.MOTION]))
             self.special[k] = _counted(answer, row)
         return True
 
@@ -99,9 +133,27 @@ class Run:
         """The answer of a frame that is proven at one place."""
         row, pair, inside = self.told[k], self._pair(k), self.inside[k]
         found = _found(row, self.asks.sought(pair).tolerance)
-        place = pair.place(found.best, senses_of(inside))
-        told = Told(_status(inside), Smoothness.SMOOTH, inside=inside)
-        return _counted(answer_of(pair, found, [place], told), row)
+        minima = self._minima_of(k)
+        senses, rows = senses_of(inside), list(minima[:, :POINTS]) or [found.best]
+        patches = [patch_told(pair, each) for each in minima] if self.asks.options.patch else []
+        told = Told(_status(inside), Smoothness.SMOOTH, inside=inside, patches=patches)
+        places = [pair.place(each, senses) for each in rows]
+        answer = answer_of(pair, found, places, told)
+        if len(minima):
+            answer = numbered(answer, minima[:, SET_BRANCH])
+        return _counted(answer, row)
+
+    def _all_minima(self) -> tuple[Array, NDArray[np.int64]]:
+        """What the kernel told of local minima, rows of all frames, and where each frame's
+        begin."""
+        if len(self.minima) != 1:
+            self.minima = [np.concatenate(self.minima)]
+            np.cumsum(self.told[:, T.N_SETS], out=self.first[1:], dtype=np.int64)
+        return self.minima[0], self.first
+
+    def _minima_of(self, k: int) -> Array:
+        rows, first = self._all_minima()
+        return rows[first[k] : first[k + 1]]
 
 
 def _status(inside: str) -> Status:

@@ -17,16 +17,22 @@ class SolidState(KeepsReadOnly):
     ----------
     proximity : SolidProximity
         The answer at the frame of this state.
+    born : int
+        How many branches of local minima there have been since the start.
     rows : int
         Pairs of pieces whose bounds are kept; 0 after a frame in which the solids meet.
     """
 
-    __slots__ = ("_pair", "front", "proximity")
+    __slots__ = ("_pair", "born", "front", "proximity")
 
     def __init__(
-        self, proximity: SolidProximity, pair: tuple[SolidModel, SolidModel], front: Front | None
+        self,
+        proximity: SolidProximity,
+        pair: tuple[SolidModel, SolidModel],
+        front: Front | None,
+        born: int = 0,
     ) -> None:
-        self.proximity, self._pair, self.front = proximity, pair, front
+        self.proximity, self._pair, self.front, self.born = proximity, pair, front, born
 
     @property
     def rows(self) -> int:

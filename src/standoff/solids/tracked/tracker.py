@@ -108,7 +108,7 @@ class SolidTracker(KeepsReadOnly):
         """
         pair = PlacedPair(self.a, self.b, Pose.of(pose_a), Pose.of(pose_b))
         answer, front = self._asks.in_time().cold(pair)
-        return SolidState(answer, (self.a, self.b), front)
+        return SolidState(answer, (self.a, self.b), front, 0 if front is None else front.born)
 
     def step(
         self, state: SolidState, pose_a: PoseLike, pose_b: PoseLike
