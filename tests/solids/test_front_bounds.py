@@ -209,9 +209,8 @@ def carried(
     """(bound, length that is still shut) of a row that had 1 and 0.5, with the slope along z, when
     B was as it is; after a turn of B about the middle of its piece, and a shift. It was shut for
     pairs up to `goal`, and is asked for those up to 0."""
-    front = F.Front(
-        np.zeros(F.STORE_REALS), np.zeros(F.KEY_REALS), np.zeros(F.ROW_REALS), 1, np.zeros(0)
-    )
+    store, keys, row = (np.zeros(n) for n in (F.STORE_REALS, F.KEY_REALS, F.ROW_REALS))
+    front = F.Front(store, keys, row, 1, np.zeros(0), np.zeros(0))
     rng = np.random.default_rng(3)
     first, at = Rotation.random(random_state=rng).as_matrix(), rng.normal(size=3)
     front.keys[:] = -np.inf

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from standoff.solids.spatial.self_intersections import SelfIntersection, SelfIntersections
     from standoff.solids.spatial.solid import Solid
     from standoff.solids.tracked.answers import SolidAnswers
-    from standoff.solids.tracked.branches import Branches, BranchEvent
+    from standoff.solids.tracked.events import LocalMinima, MinimumEvent
     from standoff.solids.tracked.state import SolidState
     from standoff.solids.tracked.tracker import SolidTracker
 else:
@@ -47,16 +47,16 @@ else:
             ),
             "standoff.solids.spatial.solid": ("Solid",),
             "standoff.solids.tracked.answers": ("SolidAnswers",),
-            "standoff.solids.tracked.branches": ("BranchEvent", "Branches"),
+            "standoff.solids.tracked.events": ("LocalMinima", "MinimumEvent"),
             "standoff.solids.tracked.state": ("SolidState",),
             "standoff.solids.tracked.tracker": ("SolidTracker",),
         },
     )
 
 __all__ = [
-    "BranchEvent",
-    "Branches",
     "Continuum",
+    "LocalMinima",
+    "MinimumEvent",
     "NearestPair",
     "OpenPair",
     "Overlap",

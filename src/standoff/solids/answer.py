@@ -45,9 +45,9 @@ class NearestPair(NamedTuple):
     patch : tuple of (point_a, point_b)
         With ``patch=``: up to four pairs that span where the boundaries are hardly farther apart,
         counterclockwise about the normal.
-    branch : int
-        In frames of a tracker: the number that a minimum keeps from frame to frame while it lives.
-        -1 in a query.
+    key : int
+        In frames of a tracker: distinguishes it from the other minima of the run, from frame to
+        frame. -1 in a query, and where the solids meet.
     """
 
     distance: float
@@ -61,7 +61,7 @@ class NearestPair(NamedTuple):
     parameters_b: tuple[float, ...]
     pieces: tuple[str, str] = ("", "")
     patch: tuple[PointPair, ...] = ()
-    branch: int = -1
+    key: int = -1
 
 
 class Continuum(NamedTuple):

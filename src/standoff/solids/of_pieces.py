@@ -217,7 +217,7 @@ def _turned_pair(pair: NearestPair) -> NearestPair:
         pair.parameters_a,
         pair.pieces[::-1],
         tuple((y, x) for x, y in pair.patch),
-        pair.branch,
+        pair.key,
     )
 
 

@@ -44,6 +44,8 @@ class End(Enum):
     JUMPED = "It came to another minimum than the one that it followed."
     LEFT = "What it followed is no longer a local minimum."
     LOST = "Its value is no longer a number."
+    FAR = "It is farther than is asked."
+    MET = "The bodies meet, and no minima are followed there."
 
     @property
     def sentence(self) -> str:
@@ -98,6 +100,8 @@ class BranchCounts(NamedTuple):
     jumped: int = 0
     left: int = 0
     lost: int = 0
+    far: int = 0
+    met: int = 0
 
     @property
     def born(self) -> int:
@@ -107,7 +111,7 @@ class BranchCounts(NamedTuple):
     @property
     def ended(self) -> int:
         """All that have ended."""
-        return self.merged + self.jumped + self.left + self.lost
+        return self.merged + self.jumped + self.left + self.lost + self.far + self.met
 
     def of(self, reason: Birth | End) -> int:
         """How many for one reason."""

@@ -7,7 +7,8 @@ from standoff.kernels.compiler.entry import INT, INTS, READ, REAL, WRITE
 from standoff.kernels.entries.solids import SOLIDS, STILL, side_at
 from standoff.kernels.solids import minima_sets, patch
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.stationary import Fans, is_stationary
+from standoff.kernels.solids.spatial_minimum import jets_at
+from standoff.kernels.solids.stationary import Fans, is_bowl, is_stationary
 
 # Of a solid, then of both.
 FANS = types.Tuple((INTS, READ))
@@ -23,11 +24,14 @@ def fans_at(fans):
 @entry(SOLIDS, READ, BOTH_FANS, READ, READ, work="solids")
 def stationary(solids, pose, fans, row, asked):
     """Is a row (distance, leaves, parameters) stationary along the normal asked[:3], A's frame, to
-    the sine asked[3]?"""
+    the sine asked[3]; and, where asked[4] is above 0, no saddle, with that to spare?"""
     a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
     q, leaves = (row[3], row[4], row[5], row[6]), (int(row[1]), int(row[2]))
     n = (asked[0], asked[1], asked[2])
-    return is_stationary(a, b, fans_at(fans[0]), fans_at(fans[1]), q, leaves, n, asked[3])
+    if not is_stationary(a, b, fans_at(fans[0]), fans_at(fans[1]), q, leaves, n, asked[3]):
+        return False
+    ja, jb = jets_at(a, leaves[0], b, leaves[1], q)
+    return asked[4] == 0.0 or is_bowl(a, leaves[0], ja, b, leaves[1], jb, q, asked[4])
 
 
 @entry(READ, READ, REAL, work="solids")

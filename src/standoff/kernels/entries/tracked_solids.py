@@ -35,6 +35,7 @@ from standoff.kernels.solids.front_frame import (
 from standoff.kernels.solids.front_rows import (
     FRAME,
     GONE,
+    N_MERGED,
     ROW_REALS,
     Front,
     Travel,
@@ -105,22 +106,24 @@ def how_ended(a, b, best, minima, low, counts):
 
 @kernel
 def front_at(front):
-    store, keys, rows, branches = front
+    store, keys, rows, branches, merged = front
     most = len(rows) // ROW_REALS
-    return Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), most, pointer(branches, 0))
+    lists = pointer(branches, 0), pointer(merged, 0)
+    return Front(pointer(store, 0), pointer(keys, 0), pointer(rows, 0), most, *lists)
 
 
 @kernel
-def told_minima(a, b, fans, front, travel, best, minima, sets):
+def told_minima(a, b, fans, front, travel, best, minima, out):
     """Write the local minima, their branches and patches; how many, -1 where they are to be looked
-    for."""
+    for. `out`: room for them, and the number of the frame."""
+    sets, frame = out
     if best[LOST] > 0.0:
         return -1
     n = gather(a, b, fans, best, minima, travel.wider, sets)
     if n > 0 and travel.wider > 0.0:
         span_all(best, minima, travel.wider, sets, n)
     if n > 0:
-        number_sets(front, minima, sets, n, branch_reach(best[SIZE], travel.ahead))
+        number_sets(front, minima, sets, n, branch_reach(best[SIZE], travel.ahead), frame)
         renew_branches(front, minima, sets, n)
     return n
 
@@ -143,15 +146,16 @@ def ask(best, asked, away):
 WAY = types.Tuple((READ, READ_ROWS, READ))
 # As `boundary_distance` has them: where the witness points were stands in the first.
 SEARCH = types.Tuple((WRITE, WRITE))
-# What is kept beside the rows of the front, their keys, the rows, the branches.
-FRONT_ARRAYS = types.Tuple((WRITE, WRITE, WRITE, WRITE))
+# What is kept beside the rows of the front, their keys, the rows, the branches, and those that have
+# merged.
+FRONT_ARRAYS = types.Tuple((WRITE, WRITE, WRITE, WRITE, WRITE))
 
 
-@entry(FRONT_ARRAYS, WRITE, WRITE, INT, REAL, work="solids")
-def number_minima(front, minima, sets, n, reach):
-    """Give `n` local minima that were told otherwise the numbers of their branches."""
+@entry(FRONT_ARRAYS, WRITE, WRITE, INT, REAL, INT, work="solids")
+def number_minima(front, minima, sets, n, reach, frame):
+    """Give `n` local minima of a frame that were told otherwise the numbers of their branches."""
     kept, rows, out = front_at(front), pointer(minima, 0), pointer(sets, 0)
-    number_sets(kept, rows, out, n, reach)
+    number_sets(kept, rows, out, n, reach, frame)
     renew_branches(kept, rows, out, n)
 
 
@@ -167,11 +171,12 @@ def solid_frames(solids, way, senses, search, fans, front, counts, out_arrays):
     told, told_sets = out_arrays
     around = fans_at(fans[0]), fans_at(fans[1])
     n_sets = 0
+    store = front[0]
+    store[N_MERGED] = 0.0
     before, poses, asked = way
     a = side_at(solids[0], STILL, senses[0])
     last = side_at(solids[1], before, senses[1])
     low = before[13]
-    store = front[0]
     kept = front_at(front)
     best, minima, c = pointer(search[0], 0), pointer(search[1], 0), pointer(counts, 0)
     for i in range(len(poses)):
@@ -203,7 +208,7 @@ def solid_frames(solids, way, senses, search, fans, front, counts, out_arrays):
         out[ANEW], out[SURE], out[N_SETS] = 1.0 if anew else 0.0, 1.0 if sure else 0.0, 0.0
         if best[ABOVE] > 0.0 and out[ENDED] == SINGLE:
             at = pointer(told_sets, SET_REALS * n_sets)
-            n = told_minima(a, now, around, kept, travel, best, minima, at)
+            n = told_minima(a, now, around, kept, travel, best, minima, (at, i))
             out[N_SETS], n_sets = max(n, 0), n_sets + max(n, 0)
             if n < 0:
                 out[ENDED] = SEVERAL

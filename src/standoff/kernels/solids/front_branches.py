@@ -10,7 +10,7 @@ from standoff.kernels.algebra.vectors import dot, norm, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.front_motion import put_three, three_at
-from standoff.kernels.solids.front_rows import N_BRANCHES, NEXT_BRANCH
+from standoff.kernels.solids.front_rows import N_BRANCHES, N_MERGED, NEXT_BRANCH
 from standoff.kernels.solids.minima_sets import SET_BRANCH, SET_REALS, SET_ROW, points_of
 from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_ints, leaf_jet
@@ -28,6 +28,9 @@ from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE, PAST_SIDE, SA
 # minimum of this frame has its number.
 B_LEAVES, B_AT, B_NUMBER, B_POINTS, B_TAKEN = 0, 2, 6, 7, 13
 BRANCH_REALS = 14
+# Of a branch that has come to the place of another one: the frame of the call, both numbers. There
+# is room for so many.
+MERGED_REALS, MOST_MERGED = 3, 256
 # From leaf to leaf in one frame.
 MOST_HANDOVERS = 4
 
@@ -163,7 +166,7 @@ def nearest_free(front, minima, sets, n, reach):
 
 
 @kernel
-def number_sets(front, minima, sets, n, reach):
+def number_sets(front, minima, sets, n, reach, frame):
     """Give each local minimum the number of its branch: the one that came to it; else the nearest
     one within `reach` that came to none; else a new number."""
     r, count = front.branches, int(front.store[N_BRANCHES])
@@ -184,6 +187,27 @@ def number_sets(front, minima, sets, n, reach):
         else:
             sets[s] = front.store[NEXT_BRANCH]
             front.store[NEXT_BRANCH] += 1.0
+    for i in range(count):
+        if r[BRANCH_REALS * i + B_TAKEN] == 0.0:
+            tell_merged(front, minima, sets, n, reach, frame, i)
+
+
+@kernel
+def tell_merged(front, minima, sets, n, reach, frame, i):
+    """Write down whether a branch that has ended came to the place of another one."""
+    o, r = BRANCH_REALS * i, front.branches
+    count = int(front.store[N_MERGED])
+    least, into = reach, -1.0
+    for k in range(n):
+        x, y = points_of(minima, MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW]))
+        off_a = norm(sub(three_at(r, o + B_POINTS), x))
+        away = max(off_a, norm(sub(three_at(r, o + B_POINTS + 3), y)))
+        if away < least:
+            least, into = away, sets[SET_REALS * k + SET_BRANCH]
+    if into >= 0.0 and count < MOST_MERGED:
+        m = MERGED_REALS * count
+        front.merged[m], front.merged[m + 1], front.merged[m + 2] = frame, r[o + B_NUMBER], into
+        front.store[N_MERGED] += 1.0
 
 
 @kernel

@@ -5,7 +5,7 @@ from math import asin, inf
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
-from standoff.kernels.compiler.decorators import kernel, reals_on_stack, small
+from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.front_branches import follow_branches
 from standoff.kernels.solids.front_close import tied
@@ -27,7 +27,6 @@ from standoff.kernels.solids.front_rows import (
     is_shut,
 )
 from standoff.kernels.solids.spatial_boxes import node_centre, node_reach
-from standoff.kernels.solids.spatial_minimum import fill_system, solved
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
@@ -49,10 +48,10 @@ from standoff.kernels.solids.spatial_progress import (
 )
 from standoff.kernels.solids.spatial_tolerances import (
     FLAT_VALLEY,
-    HELD_SLOPE,
     MOTION_SPARE,
     ONE_PLACE,
 )
+from standoff.kernels.solids.stationary import is_bowl
 
 # A front that has this many times its first rows, and some, is made anew.
 GROWN, GROWN_BY = 2.0, 256.0
@@ -210,23 +209,4 @@ def is_single(a, b, best, minima):
         near = minima[MINIMUM_REALS * k] <= tied(best)
         if near and apart_by(minima, k, a, b, ja[0], jb[0]) > ONE_PLACE * best[SIZE]:
             return False
-    return is_steep(a, leaf_a, ja, b, leaf_b, jb, q, best[LEAST])
-
-
-@kernel
-def is_steep(a, leaf_a, ja, b, leaf_b, jb, q, distance):
-    """Does the distance grow with the square of the parameters that no side holds?"""
-    g, H, free, scales = reals_on_stack(4), reals_on_stack(16), reals_on_stack(4), reals_on_stack(4)
-    out = reals_on_stack(4)
-    box_a, box_b = leaf_box(a, leaf_a), leaf_box(b, leaf_b)
-    lo = (box_a.u0, box_a.v0, box_b.u0, box_b.v0)
-    hi = (box_a.u1, box_a.v1, box_b.u1, box_b.v1)
-    fill_system(ja, jb, g, H)
-    for i in range(4):
-        tangent = ja[1 + i] if i < 2 else jb[i - 1]
-        length = norm(tangent)
-        scales[i] = length * length
-        at_side = q[i] <= lo[i] or q[i] >= hi[i]
-        held = at_side and abs(g[i]) > HELD_SLOPE * length * distance
-        free[i] = 0.0 if held or length == 0.0 or hi[i] <= lo[i] else 1.0
-    return solved(H, g, free, -FLAT_VALLEY, scales, out)
+    return is_bowl(a, leaf_a, ja, b, leaf_b, jb, q, -FLAT_VALLEY)

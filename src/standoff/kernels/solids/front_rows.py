@@ -35,20 +35,23 @@ KEPT, CUT, GONE_ROW, OPEN_ROW = 0, 1, 2, 3
 KEY_REALS, RESTS_TO = 3, 2
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
 # the front had when it was made, how many frames there were, 1 until a front that is being made
-# has no open rows, and how many evaluations it took to make it; how many branches there are, and
-# what the next new one is called.
+# has no open rows, and how many evaluations it took to make it; how many branches there are,
+# what the next new one is called, and how many have come to the place of another one in this call.
 N_ROWS, GONE, N_MADE, FRAME, MAKING, COST, N_BRANCHES, NEXT_BRANCH = 0, 1, 2, 3, 4, 5, 6, 7
-STORE_REALS = 8
+N_MERGED = 8
+STORE_REALS = 9
 
 
 class Front(NamedTuple):
-    """The rows, and room for `most` of them; the branches (``front_branches``)."""
+    """The rows, and room for `most` of them; the branches, and those that have come to the place of
+    another one (``front_branches``)."""
 
     store: Any
     keys: Any
     rows: Any
     most: Any
     branches: Any
+    merged: Any
 
 
 class Travel(NamedTuple):

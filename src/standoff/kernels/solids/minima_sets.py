@@ -5,6 +5,7 @@ from standoff.kernels.algebra.vectors import norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
+from standoff.kernels.solids.spatial_minimum import jets_at
 from standoff.kernels.solids.spatial_pieces import leaf_ints, leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
@@ -20,8 +21,14 @@ from standoff.kernels.solids.spatial_progress import (
     SIZE,
     TOLERANCE,
 )
-from standoff.kernels.solids.spatial_tolerances import ONE_PLACE, SAME_BASIN, SURE_NORMAL, VALLEY
-from standoff.kernels.solids.stationary import is_stationary
+from standoff.kernels.solids.spatial_tolerances import (
+    FLAT_VALLEY,
+    ONE_PLACE,
+    SAME_BASIN,
+    SURE_NORMAL,
+    VALLEY,
+)
+from standoff.kernels.solids.stationary import is_bowl, is_stationary
 
 # What is told of a local minimum: its nearest pair as a row of minima has it, with the best bound
 # that any of its pieces has; the number of that row; the branch, of the frame before, that came to
@@ -70,7 +77,10 @@ def is_minimum(a, b, fans, minima, o):
     n = scale(1.0 / minima[o], sub(y, x))
     q = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     leaves = int(minima[o + 1]), int(minima[o + 2])
-    return is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
+    if not is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM):
+        return False
+    ja, jb = jets_at(a, leaves[0], b, leaves[1], q)
+    return is_bowl(a, leaves[0], ja, b, leaves[1], jb, q, FLAT_VALLEY)
 
 
 @kernel

@@ -1,4 +1,5 @@
-"""Which pairs of points are local minima of the distance of two boundaries, to first order.
+"""Which pairs of points are local minima of the distance of two boundaries, to first order, and no
+saddles of two of their leaves.
 
 At one no direction into a boundary leads towards the other point. The directions are those of a
 face's tangents, of an edge and into its faces, of the corners and edges of a vertex: its fan.
@@ -8,12 +9,14 @@ from math import atan2, pi, sqrt
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import cross, dot, norm, rotate_back, scale
+from standoff.kernels.algebra.vectors import cross, dot, norm, rotate_back, scale, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import coedge_conormal, edge_record
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.spatial_pieces import leaf_ints, leaf_jet
+from standoff.kernels.solids.spatial_minimum import fill_system, solved
+from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_ints, leaf_jet
+from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
 
 # Of each vertex four integers: where its directions stand, and how many; where its corners, and how
 # many. A direction is a unit vector; a corner the edge that leaves it, what is a quarter turn
@@ -82,3 +85,25 @@ def is_stationary(a, b, fans_a, fans_b, q, leaves, n, sine):
     if steepest(a, fans_a, leaves[0], q[0], q[1], n) > sine:
         return False
     return steepest(b, fans_b, leaves[1], q[2], q[3], scale(-1.0, n)) <= sine
+
+
+@kernel
+def is_bowl(a, leaf_a, ja, b, leaf_b, jb, q, spare):
+    """Does the square of the distance bend upwards along all parameters that no side holds, where
+    `spare` times the squared tangents is added to its second derivatives? Below 0 it then grows
+    away from the pair of points in any case; above 0, if not, the pair is a saddle."""
+    g, H, free, scales = reals_on_stack(4), reals_on_stack(16), reals_on_stack(4), reals_on_stack(4)
+    out = reals_on_stack(4)
+    box_a, box_b = leaf_box(a, leaf_a), leaf_box(b, leaf_b)
+    lo = (box_a.u0, box_a.v0, box_b.u0, box_b.v0)
+    hi = (box_a.u1, box_a.v1, box_b.u1, box_b.v1)
+    fill_system(ja, jb, g, H)
+    distance = norm(sub(jb[0], ja[0]))
+    for i in range(4):
+        tangent = ja[1 + i] if i < 2 else jb[i - 1]
+        length = norm(tangent)
+        scales[i] = length * length
+        at_side = q[i] <= lo[i] or q[i] >= hi[i]
+        held = at_side and abs(g[i]) > HELD_SLOPE * length * distance
+        free[i] = 0.0 if held or length == 0.0 or hi[i] <= lo[i] else 1.0
+    return solved(H, g, free, spare, scales, out)

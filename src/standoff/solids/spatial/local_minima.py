@@ -16,7 +16,7 @@ from standoff.solids.spatial.minimum import Found, leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import distance_to_boundary
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.stationary import is_stationary
+from standoff.solids.spatial.stationary import is_minimum
 from standoff.solids.spatial.ties import is_same
 
 # Where between two pairs the boundaries are looked at: what is half way may be on another piece of
@@ -27,7 +27,7 @@ BETWEEN = (0.5, 0.19, 0.81)
 def local_minima(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> list[Place]:
     """All that were found, the nearest first; of each set of nearest pairs one."""
     places = [pair.place(row, senses) for row in [found.best, *found.minima]]
-    places = [each for k, each in enumerate(places) if k == 0 or is_stationary(pair, each)]
+    places = [each for k, each in enumerate(places) if k == 0 or is_minimum(pair, each)]
 
     def same(place: Place, other: Place) -> bool:
         near = abs(place.distance - other.distance) <= found.tolerance

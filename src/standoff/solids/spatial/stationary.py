@@ -13,6 +13,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.minima import stationary
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
+from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY
 from standoff.kernels.solids.stationary import FAN_INTS
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
@@ -24,11 +25,21 @@ from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
 WAYS_AROUND = 17
 
 
-def is_stationary(pair: PlacedPair, place: Place, sine: float = AT_OPTIMUM) -> bool:
+def is_minimum(pair: PlacedPair, place: Place) -> bool:
+    """Can no small step on either boundary make a pair nearer, to first order, and is it no saddle
+    of its two leaves?"""
+    return _told(pair, place, AT_OPTIMUM, FLAT_VALLEY)
+
+
+def is_stationary(pair: PlacedPair, place: Place, sine: float) -> bool:
     """Can no small step on either boundary make a pair nearer along its normal, to first order?
     `sine`: of the angle by which one may."""
+    return _told(pair, place, sine, 0.0)
+
+
+def _told(pair: PlacedPair, place: Place, sine: float, spare: float) -> bool:
     solids, fans = (pair.a.packed, pair.b.packed), (fans_of(pair.a), fans_of(pair.b))
-    asked = np.array([*(pair.ra.T @ place.normal), sine])
+    asked = np.array([*(pair.ra.T @ place.normal), sine, spare])
     return bool(stationary(solids, pair.relative, fans, place.row, asked))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,12 @@ from numpy.typing import NDArray
 from standoff.kernels.entries import tracked_solids as T
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
-from standoff.solids.tracked.branches import Branches, BranchEvent
+from standoff.solids.tracked.events import LocalMinima, MinimumEvent
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -46,9 +51,9 @@ class SolidAnswers(KeepsReadOnly):
         special: Mapping[int, SolidProximity],
         plain: tuple[NDArray[np.object_], float],
         make: Callable[[int], SolidProximity],
-        branches: Callable[[], tuple[Branches, tuple[BranchEvent, ...]]],
+        minima: Callable[[], tuple[LocalMinima, tuple[MinimumEvent, ...]]],
     ) -> None:
-        self._make, self._special, self._tell = make, dict(special), branches
+        self._make, self._special, self._tell = make, dict(special), minima
         self.status, slack = plain
         self.point_a, self.point_b, self.normal = places
         self.distance = told[:, T.DISTANCE].copy()
@@ -75,7 +80,7 @@ class SolidAnswers(KeepsReadOnly):
         self.restarts[k] = answer.counts.restarts > 0
 
     @property
-    def branches(self) -> Branches:
+    def minima(self) -> LocalMinima:
         """All local minima of all frames, in arrays.
 
         Raises
@@ -86,8 +91,8 @@ class SolidAnswers(KeepsReadOnly):
         return self._told[0]
 
     @property
-    def events(self) -> tuple[BranchEvent, ...]:
-        """Which branches begin, end and go to another feature, and when another is the nearest.
+    def events(self) -> tuple[MinimumEvent, ...]:
+        """Which minima begin, end and go to another feature, and when another is the nearest.
 
         Raises
         ------
@@ -97,8 +102,41 @@ class SolidAnswers(KeepsReadOnly):
         return self._told[1]
 
     @cached_property
-    def _told(self) -> tuple[Branches, tuple[BranchEvent, ...]]:
+    def _told(self) -> tuple[LocalMinima, tuple[MinimumEvent, ...]]:
         return self._tell()
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Draw how far each local minimum is apart, over the frames, where it begins and ends.
+
+        Parameters
+        ----------
+        path : str or path, optional
+            Also write the picture there, whole or not at all: .png, .svg or .pdf.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        ModuleNotFoundError
+            If matplotlib is not installed; the message names the extra.
+        StandoffError
+            The tracker was made without ``minima=``; or the file has another ending.
+        TypeError
+            If `path` is neither a string nor a Path.
+        OSError
+            If the file cannot be written.
+        """
+        from standoff.bodies.drawing.files import checked_file, write_picture
+
+        target = None if path is None else checked_file(path)
+        from standoff.solids.tracked.plot import minima_figure
+
+        figure = minima_figure(self)
+        if target is not None:
+            write_picture(figure, target)
+        return figure
 
     def __len__(self) -> int:
         return len(self.distance)

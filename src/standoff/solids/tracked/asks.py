@@ -88,7 +88,7 @@ class Asks(NamedTuple):
             numbers = frames.minima[:, SET_BRANCH]
             if len(numbers) != len(answer.minima):
                 told = self.apart(pair, frames, answer.inside, 0.0)
-                numbers = np.array([each.branch for each in told.minima])
+                numbers = np.array([each.key for each in told.minima])
             if len(numbers) == len(answer.minima):
                 answer = numbered(answer, numbers)
         return answer, frames.kept()
@@ -105,6 +105,6 @@ class Asks(NamedTuple):
 
 
 def numbered(answer: SolidProximity, numbers: NDArray[Any]) -> SolidProximity:
-    """With the branches of its minima."""
+    """With the keys of its minima."""
     named = zip(answer.minima, numbers, strict=True)
-    return replace(answer, minima=tuple(m._replace(branch=int(k)) for m, k in named))
+    return replace(answer, minima=tuple(m._replace(key=int(k)) for m, k in named))

@@ -20,11 +20,12 @@ from standoff.kernels.entries.tracked_solids import (
 )
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids import spatial_progress as C
-from standoff.kernels.solids.front_branches import BRANCH_REALS
+from standoff.kernels.solids.front_branches import BRANCH_REALS, MERGED_REALS, MOST_MERGED
 from standoff.kernels.solids.front_frame import FRAMES_AHEAD
 from standoff.kernels.solids.front_rows import (
     KEY_REALS,
     N_BRANCHES,
+    N_MERGED,
     N_ROWS,
     NEXT_BRANCH,
     ROW_REALS,
@@ -95,6 +96,7 @@ class Work(NamedTuple):
     keys: Array
     rows: Array
     branches: Array
+    merged: Array
     minima: Array
     counts: NDArray[np.int64]
     sets: Array
@@ -126,6 +128,7 @@ def _room(thread: int) -> Work:
         np.empty(KEY_REALS * MOST_ROWS),
         np.empty(ROW_REALS * MOST_ROWS),
         np.empty(BRANCH_REALS * MOST_BRANCHES),
+        np.empty(MERGED_REALS * MOST_MERGED),
         np.empty(C.MINIMUM_REALS * MOST_LOCAL),
         np.zeros(8, dtype=np.int64),
         np.empty(SET_REALS * MOST_TOLD),
@@ -178,7 +181,7 @@ class Frames:
     def go(self, poses: Array, told: Array) -> int:
         """Frames with B at poses (n, 12) in A's frame, into the rows of `told`; how many were
         done."""
-        store, keys, rows, branches, minima, counts, sets = self.work
+        store, keys, rows, branches, merged, minima, counts, sets = self.work
         done = int(
             solid_frames(
                 self.packed,
@@ -186,13 +189,14 @@ class Frames:
                 self.senses,
                 (self.best, minima),
                 self.fans,
-                (store, keys, rows, branches),
+                (store, keys, rows, branches, merged),
                 counts,
                 (told, sets),
             )
         )
         total = int(told[:done, N_SETS].sum())
         self.minima = sets.reshape(-1, SET_REALS)[:total].copy() if total else NO_ROWS
+        self.done = done
         self.before[:12] = poses[done - 1]
         self.before[12], self.before[13] = told[done - 1, DISTANCE], told[done - 1, BOUND]
         return done
@@ -219,12 +223,19 @@ class Frames:
         """How many branches there have been."""
         return int(self.work.store[NEXT_BRANCH])
 
-    def number(self, rows: Array, sets: Array, motion: float) -> Array:
+    def merged(self) -> NDArray[np.int64]:
+        """Of the last call's frames (frame, key, key of the one whose place it has come to), rows
+        (n, 3)."""
+        n = MERGED_REALS * int(self.work.store[N_MERGED])
+        return self.work.merged[:n].reshape(-1, MERGED_REALS).astype(np.int64)
+
+    def number(self, rows: Array, sets: Array, motion: float) -> NDArray[np.int64]:
         """The branches of local minima that were told otherwise, after a motion, length: their
         numbers."""
         n = min(len(sets), MOST_BRANCHES)
         reach = SAME_BASIN * self.best[C.SIZE] + FRAMES_AHEAD * motion
-        number_minima(self.work[:4], rows.ravel(), sets.ravel(), n, float(reach))
+        frame = self.done - 1
+        number_minima(self.work[:5], rows.ravel(), sets.ravel(), n, float(reach), frame)
         numbers = np.full(len(sets), -1, dtype=np.int64)
         numbers[:n] = sets[:n, SET_BRANCH]
         return numbers

@@ -20,7 +20,7 @@ from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.tracked.answers import SolidAnswers, world_places
 from standoff.solids.tracked.asks import Asks, numbered
-from standoff.solids.tracked.branches import Branches, BranchEvent, branches_of, events_of
+from standoff.solids.tracked.events import Course, LocalMinima, MinimumEvent, events_of, minima_of
 from standoff.solids.tracked.front import NO_ROWS, Frames, Front, room_for
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
@@ -39,6 +39,7 @@ class Run:
         self.told = room_for(len(a))
         self.inside = np.full(len(a), "", dtype=object)
         self.special: dict[int, SolidProximity] = {}
+        self.merged: dict[tuple[int, int], int] = {}
         self.minima, self.first = [NO_ROWS], np.zeros(len(a) + 1, dtype=np.int64)
 
     def single(self) -> tuple[SolidState, SolidProximity]:
@@ -57,10 +58,10 @@ class Run:
         statuses = np.array([_status(inside) for inside in self.inside], dtype=object)
         places = world_places(self.told, self.a)
         plain = statuses, slack
-        answers = SolidAnswers(self.told, places, self.special, plain, self._made, self.branches)
+        answers = SolidAnswers(self.told, places, self.special, plain, self._made, self.minima_told)
         return self._state(answers[len(answers) - 1], front), answers
 
-    def branches(self) -> tuple[Branches, tuple[BranchEvent, ...]]:
+    def minima_told(self) -> tuple[LocalMinima, tuple[MinimumEvent, ...]]:
         """The local minima of all frames, and what becomes of them.
 
         Raises
@@ -68,17 +69,18 @@ class Run:
         StandoffError
             None were asked.
         """
-        if self.asks.options.minima is None:
+        length = self.asks.options.minima
+        if length is None:
             raise StandoffError(
                 "These frames tell no local minima: give the tracker minima=, a length below which "
                 "they are kept.",
                 "minima",
                 None,
             )
-        solids, slack = (self.asks.a, self.asks.b), self.asks.a.slack + self.asks.b.slack
-        rows, first = self._all_minima()
-        told = branches_of(solids, rows, first, self.special, self.a, slack)
-        return told, tuple(events_of(told, len(self.a), self.state.proximity))
+        solids = self.asks.a, self.asks.b
+        told = minima_of(solids, *self._all_minima(), self.special, self.a)
+        course = Course(told, self.told[:, T.MOTION], length, self.merged)
+        return told, tuple(events_of(course, self.state.proximity))
 
     def _through(self) -> Front | None:
         """All frames; the front after the last."""
@@ -97,7 +99,10 @@ class Run:
             first, at = at, at + frames.go(self.relative[at:], self.told[at:])
             self.minima.append(frames.minima)
             self.inside[first:at] = front.inside
-            if not self._settled(at - 1, frames, front.inside):
+            settled = self._settled(at - 1, frames, front.inside)
+            for k, key, into in frames.merged().tolist():
+                self.merged[first + k, key] = into
+            if not settled:
                 self.born = frames.born
                 return self._ask(at - 1), at
         return frames.kept(), at

@@ -1,4 +1,4 @@
-"""Branches: local minima keep their numbers from frame to frame, and tell when they come and go."""
+"""Branches: local minima keep their keys from frame to frame, and tell when they come and go."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.solid_shapes import bracket, prism, ring, tube
-from standoff.solids import BranchEvent, SolidAnswers
+from standoff.solids import MinimumEvent, SolidAnswers
+from standoff.tracking.branches import Birth, End
 
 Array = np.ndarray
 STILL = np.eye(4)
@@ -32,8 +33,8 @@ def run(tracker, poses: Array) -> SolidAnswers:
     return tracker.run(tracker.start(STILL, poses[0]), STILL, poses)[1]
 
 
-def kinds(events: tuple[BranchEvent, ...], kind: str) -> list[tuple[int, float]]:
-    return [(each.branch, round(float(XS[each.frame]), 2)) for each in events if each.kind == kind]
+def kinds(events: tuple[MinimumEvent, ...], kind: str) -> list[tuple[int, float]]:
+    return [(each.key, round(float(XS[each.frame]), 2)) for each in events if each.kind == kind]
 
 
 def test_a_ball_over_two_feet() -> None:
@@ -44,10 +45,13 @@ def test_a_ball_over_two_feet() -> None:
     births, ends = kinds(answers.events, "birth"), kinds(answers.events, "end")
     assert [x for _, x in births] == pytest.approx([1.0, 2.0 - reach], abs=0.011)
     assert [x for _, x in ends] == pytest.approx([1.0 + reach, 2.0], abs=0.011)
-    assert [branch for branch, _ in births] == [1, 2]
-    assert [branch for branch, _ in ends] == [0, 1]
+    assert [key for key, _ in births] == [1, 2]
+    assert [key for key, _ in ends] == [0, 1]
+    assert {each.reason for each in answers.events if each.kind == "birth"} == {Birth.SEARCH}
+    ended = {each.key: each.reason for each in answers.events if each.kind == "end"}
+    assert ended == {0: End.FAR, 1: End.LEFT}
     passed = [each for each in answers.events if each.kind == "handover"]
-    assert [(each.branch, each.before) for each in passed] == [(2, 0)]
+    assert [(each.key, each.other) for each in passed] == [(2, 0)]
     assert XS[passed[0].frame] == pytest.approx(1.5, abs=0.011)
     # a ball at the edge of a foot leaves its face, and comes on to the other's
     for branch, x in ((0, 1.0), (2, 2.0)):
@@ -62,11 +66,11 @@ def test_the_table_is_that_of_the_answers() -> None:
     # the ball meets the first foot, and comes up again
     down = [placed(np.eye(3), [0.5, y, 0.5]) for y in (1.4, 1.32, 1.25, 1.32, 1.4)]
     answers = run(tracker, np.concatenate([ACROSS[:120], down]))
-    told = answers.branches
+    told = answers.minima
     assert answers.restarts.any()
     rows = [(k, m) for k, answer in enumerate(answers) for m in answer.minima]
     assert told.frame.tolist() == [k for k, _ in rows]
-    assert told.branch.tolist() == [m.branch for _, m in rows]
+    assert told.key.tolist() == [m.key for _, m in rows]
     assert told.distance.tolist() == [m.distance for _, m in rows]
     assert told.lower_bound.tolist() == [m.lower_bound for _, m in rows]
     assert told.point_a == pytest.approx(np.array([m.point_a for _, m in rows]), abs=1e-14)
@@ -74,11 +78,14 @@ def test_the_table_is_that_of_the_answers() -> None:
     assert list(told.feature_a) == [m.feature_a for _, m in rows]
     assert list(told.feature_b) == [m.feature_b for _, m in rows]
     # none is told while they meet; what comes up then is another branch
-    assert told.branch[told.frame == 122].tolist() == [-1]
-    last, first = (set(told.branch[told.frame == k]) for k in (121, 123))
+    assert told.key[told.frame == 122].tolist() == [-1]
+    last, first = (set(told.key[told.frame == k]) for k in (121, 123))
     assert not last & first
-    ended = {each.branch for each in answers.events if each.kind == "end" and each.frame == 122}
-    assert ended == last
+    events = [each for each in answers.events if each.frame in (122, 123)]
+    ended = {each.key: each.reason for each in events if each.kind == "end"}
+    assert ended == dict.fromkeys(last, End.MET)
+    born = {each.key: each.reason for each in events if each.kind == "birth"}
+    assert born == dict.fromkeys(first, Birth.START)
 
 
 def test_steps_and_runs_in_pieces_go_on_with_the_numbers() -> None:
@@ -88,16 +95,16 @@ def test_steps_and_runs_in_pieces_go_on_with_the_numbers() -> None:
     told, events = [], []
     for first in range(0, len(ACROSS), 40):
         state, answers = tracker.run(state, STILL, ACROSS[first : first + 40])
-        told += [[m.branch for m in answer.minima] for answer in answers]
+        told += [[m.key for m in answer.minima] for answer in answers]
         events += [each._replace(frame=each.frame + first) for each in answers.events]
-    assert told == [[m.branch for m in answer.minima] for answer in whole]
+    assert told == [[m.key for m in answer.minima] for answer in whole]
     assert tuple(events) == whole.events
     assert state.born == 3
     state = tracker.start(STILL, ACROSS[100])
     for pose in ACROSS[100:160]:
         state, found = tracker.step(state, STILL, pose)
-        assert [m.branch for m in found.minima] == [m.branch for m in state.proximity.minima]
-        assert {m.branch for m in found.minima} <= {0, 1, 2}
+        assert [m.key for m in found.minima] == [m.key for m in state.proximity.minima]
+        assert {m.key for m in found.minima} <= {0, 1, 2}
 
 
 def test_two_places_of_a_ring_keep_their_numbers_through_their_tie() -> None:
@@ -109,10 +116,10 @@ def test_two_places_of_a_ring_keep_their_numbers_through_their_tie() -> None:
         [placed(r, [0.97, t, 0]) for r, t in zip(turns, np.linspace(-0.1, 0.1, 41), strict=True)]
     )
     answers = run(so.Tracker(link, link, minima=0.5), poses)
-    told = answers.branches
-    assert set(told.branch) == {0, 1}
+    told = answers.minima
+    assert set(told.key) == {0, 1}
     for branch in (0, 1):
-        mine = told.branch == branch
+        mine = told.key == branch
         assert mine.sum() == len(poses)
         assert np.abs(np.diff(told.point_a[mine], axis=0)).max() < 0.2
     assert {each.kind for each in answers.events} <= {"switch", "handover"}
@@ -142,7 +149,7 @@ def test_a_minimum_is_handed_on_from_leaf_to_leaf_past_another_one() -> None:
     ended = [each for each in answers.events if each.kind == "end"]
     assert counts[-1] == counts[0] + len(born) - len(ended)
     # 20 frames of a slow motion: each minimum comes or goes once, at most
-    assert len({each.branch for each in born}) == len(born) <= 3
+    assert len({each.key for each in born}) == len(born) <= 3
 
 
 @pytest.mark.parametrize(
@@ -167,12 +174,12 @@ def test_numbers_are_of_places_that_move_little(seed: int) -> None:
             step = Rotation.from_rotvec(spin).as_matrix()
             poses.append(placed(step @ poses[-1][:3, :3], poses[-1][:3, 3] + drift))
         answers = run(so.Tracker(a, b, minima=least + 0.5), np.array(poses))
-        told = answers.branches
+        told = answers.minima
         for k in range(1, len(poses)):
             now, last = told.frame == k, told.frame == k - 1
-            assert len(set(told.branch[now])) == now.sum()
+            assert len(set(told.key[now])) == now.sum()
             for i in np.flatnonzero(now):
-                for j in np.flatnonzero(last & (told.branch == told.branch[i])):
+                for j in np.flatnonzero(last & (told.key == told.key[i])):
                     frames += 1
                     leaps += np.linalg.norm(told.point_a[i] - told.point_a[j]) > 0.1 * a.size
     assert frames > 100
@@ -181,8 +188,23 @@ def test_numbers_are_of_places_that_move_little(seed: int) -> None:
 
 def test_without_minima_there_are_none() -> None:
     answers = run(so.Tracker(FEET, BALL), ACROSS[:3])
-    for each in ("branches", "events"):
+    for each in ("minima", "events"):
         with pytest.raises(so.StandoffError, match="minima="):
             getattr(answers, each)
-    assert answers[0].minima[0].branch == -1
-    assert so.solids.distance(FEET, BALL, STILL, ACROSS[0], minima=0.75).minima[0].branch == -1
+    assert answers[0].minima[0].key == -1
+    assert so.solids.distance(FEET, BALL, STILL, ACROSS[0], minima=0.75).minima[0].key == -1
+
+
+@pytest.mark.parametrize(("tilt", "reason"), [(0.02, End.LEFT), (0.0, End.MERGED)])
+def test_two_minima_become_one(tilt: float, reason: End) -> None:
+    """A rod across a ring rolls outwards. A little tilted, the farther of its two places vanishes
+    away from the other; level, both come together at the top, which was a saddle between them."""
+    link, rod = ring(1.0, 0.2), so.shapes.capsule(0.1, 3.0)
+    turn = Rotation.from_euler("y", np.pi / 2 - tilt).as_matrix()
+    poses = np.array([placed(turn, [0, y, 0.45]) for y in np.linspace(0.9, 1.3, 81)])
+    answers = run(so.Tracker(link, rod, minima=0.75), poses)
+    counts = [len(answer.minima) for answer in answers]
+    assert (counts[0], counts[-1]) == (2, 1)
+    ended = [each for each in answers.events if each.kind == "end"]
+    assert ended[0].reason is reason
+    assert ended[0].other == (answers[-1].minima[0].key if reason is End.MERGED else -1)
