@@ -42,11 +42,13 @@ from standoff.kernels.solids.spatial_progress import (
     N_OPEN,
     NOWHERE,
     SIZE,
+    TOLERANCE,
     evaluations,
     farthest,
     keep_found,
 )
 from standoff.kernels.solids.spatial_tolerances import (
+    FLAT_SPAN,
     FLAT_VALLEY,
     MOTION_SPARE,
     ONE_PLACE,
@@ -209,4 +211,12 @@ def is_single(a, b, best, minima):
         near = minima[MINIMUM_REALS * k] <= tied(best)
         if near and apart_by(minima, k, a, b, ja[0], jb[0]) > ONE_PLACE * best[SIZE]:
             return False
-    return is_bowl(a, leaf_a, ja, b, leaf_b, jb, q, -FLAT_VALLEY)
+    return is_bowl(a, leaf_a, ja, b, leaf_b, jb, q, -flat_valley(best))
+
+
+@small
+def flat_valley(best):
+    """How little the square of the distance may bend where the nearest pairs may be a continuum: a
+    peg in its hole bends it little too, by its play."""
+    size = best[SIZE]
+    return min(FLAT_VALLEY, FLAT_SPAN * best[LEAST] * best[TOLERANCE] / (size * size))

@@ -53,6 +53,9 @@ FLAT_VALLEY: Final = 1e-6
 direction, the nearest pairs may be a continuum, which is then looked for."""
 PAST_SIDE: Final = 1e-9
 """Of a leaf: how far beyond its side the next one is looked for, some roundings of a parameter."""
+FLAT_SPAN: Final = 8e6
+"""Per square of the sizes: where the distance bends by less than this many tolerances, nearest
+pairs a thousandth of the sizes apart may be as near; eight over the square of that length."""
 HELD_SLOPE: Final = 1e-6
 """Sine: a parameter at the side of a leaf is held there if the distance's slope is more."""
 MOTION_SPARE: Final = 1e-14

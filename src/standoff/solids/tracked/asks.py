@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
@@ -76,21 +75,22 @@ class Asks(NamedTuple):
         """An answer from nothing, with the front that frames go on from where there is one. `born`:
         how many branches there were before."""
         pose_a, pose_b = (Pose.from_checked(row[:9].reshape(3, 3), row[9:]) for row in pair.poses)
-        answer = spatial_distance(self.a, self.b, pose_a, pose_b, self.options)
+        # of local minima a frame proves less, and is far from so dear where walls are side by side
+        nearest = self._replace(options=self.options._replace(minima=None, patch=None))
+        answer = spatial_distance(self.a, self.b, pose_a, pose_b, nearest.options)
         answer = replace(answer, counts=answer.counts._replace(restarts=1))
         if answer.lower_bound <= 0.0:
             return answer, None
-        sought, senses = self.sought(pair), senses_of(answer.inside)
+        sought, senses = nearest.sought(pair), senses_of(answer.inside)
         front = front_at(pair, pair.least(senses, sought), senses, sought, born)
         frames = self.frames(front)
         frames.go(pair.relative[None], room_for(1))
         if self.options.minima is not None:
-            numbers = frames.minima[:, SET_BRANCH]
-            if len(numbers) != len(answer.minima):
-                told = self.apart(pair, frames, answer.inside, 0.0)
-                numbers = np.array([each.key for each in told.minima])
-            if len(numbers) == len(answer.minima):
-                answer = numbered(answer, numbers)
+            told = self.apart(pair, frames, answer.inside, 0.0)
+            counts = told.counts._replace(
+                evaluations=answer.counts.evaluations + told.counts.evaluations, restarts=1
+            )
+            answer = replace(told, counts=counts)
         return answer, frames.kept()
 
     def apart(
