@@ -3,7 +3,8 @@
 Run it with ``python -m benchmarks.tracked_solids``. B slides along A at about a gap, by 2e-3 of the
 size and 2 mrad a frame, and by a tenth of that. Times are of one thread, in microseconds: of a
 frame in a run with its answers; of a frame by itself, as the least of three runs; of a query from
-nothing, and of OpenCASCADE's (``--theirs 5``, which takes seconds each); statuses of all.
+nothing, and of OpenCASCADE's (``--theirs 5``, which takes seconds each); statuses of all. With
+``--minima 0.1`` frames and queries tell all local minima up to a tenth of the size beyond the gap.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from scipy.spatial.transform import Rotation
 from benchmarks.cad_gaps import their_distance
 from benchmarks.solids import drawn_steps, posed, turned
 from standoff.solids import Solid, SolidTracker
-from standoff.solids.asked import DEADLINE
+from standoff.solids.asked import DEADLINE, DEFAULT
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.tracked.front import room_for
 from standoff.tracking.status import Status
@@ -100,10 +101,14 @@ def by_themselves(tracker: SolidTracker, poses: np.ndarray) -> np.ndarray:
     return np.min(found, axis=0)
 
 
-def row(pair: tuple[Turned, Turned], poses: np.ndarray, given: argparse.Namespace) -> str:
+def row(
+    pair: tuple[Turned, Turned], poses: np.ndarray, gap: float, given: argparse.Namespace
+) -> str:
     """Of all frames one line; see `main`."""
     a, b = pair[0].shape, pair[1].shape
-    tracker = SolidTracker(a, b, deadline=given.deadline)
+    below = gap + 0.5 * given.minima * (a.size + b.size) if given.minima else None
+    tracker = SolidTracker(a, b, deadline=given.deadline, minima=below)
+    asked = DEFAULT._replace(minima=below)
     state = tracker.start(STILL, poses[0])
     means = []
     for _ in range(REPEATS):
@@ -115,7 +120,7 @@ def row(pair: tuple[Turned, Turned], poses: np.ndarray, given: argparse.Namespac
     queries, others, worst = [], [], 0.0
     for k in np.linspace(1, len(poses) - 1, given.cold).astype(int):
         start = time.perf_counter()
-        answer = spatial_distance(a, b, STILL, poses[k])
+        answer = spatial_distance(a, b, STILL, poses[k], asked)
         queries.append(1e6 * (time.perf_counter() - start))
         worst = max(worst, abs(answer.distance - answers.distance[k - 1]))
     for k in np.linspace(1, len(poses) - 1, given.theirs).astype(int):
@@ -129,6 +134,7 @@ def row(pair: tuple[Turned, Turned], poses: np.ndarray, given: argparse.Namespac
     return (
         f"{min(means):7.1f} {quantiles}  {np.median(queries):7.0f} {other}  {worst:.0e}  {share}; "
         f"{answers.restarts.sum()} from nothing, {answers.rebuilds.sum()} made anew"
+        + (f"; {len(answers.minima.frame) / len(answers):.1f} minima" if below else "")
     )
 
 
@@ -139,6 +145,7 @@ def main() -> None:
     parser.add_argument("--cold", type=int, default=50, help="queries from nothing")
     parser.add_argument("--theirs", type=int, default=0, help="queries of OpenCASCADE")
     parser.add_argument("--deadline", type=int, default=DEADLINE, help="evaluations of a frame")
+    parser.add_argument("--minima", type=float, default=0.0, help="beyond the gap, of the size")
     given = parser.parse_args()
     for faces in given.faces:
         rng = np.random.default_rng(faces)
@@ -151,7 +158,7 @@ def main() -> None:
         for speed in SPEEDS:
             for gap in GAPS:
                 poses = sliding(a, b, gap, speed, given.frames, rng)
-                line = row(pair, poses, given)
+                line = row(pair, poses, gap, given)
                 print(f"{speed:6g} {gap:6g} {line}", flush=True)
 
 

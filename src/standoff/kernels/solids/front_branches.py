@@ -15,9 +15,7 @@ from standoff.kernels.solids.minima_sets import SET_BRANCH, SET_REALS, SET_ROW, 
 from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_ints, leaf_jet
 from standoff.kernels.solids.spatial_progress import (
-    BRANCH,
     MINIMUM_REALS,
-    N_MINIMA,
     farthest,
     keep,
     on_both,
@@ -142,7 +140,6 @@ def follow_branches(a, b, front, best, minima, counts):
         pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
         if distance <= farthest(best) and on_both(pa, pb, q):
             keep(best, minima, pa, pb, q, distance)
-            minima[MINIMUM_REALS * (int(best[N_MINIMA]) - 1) + BRANCH] = i
 
 
 @kernel
@@ -167,15 +164,11 @@ def nearest_free(front, minima, sets, n, reach):
 
 @kernel
 def number_sets(front, minima, sets, n, reach, frame):
-    """Give each local minimum the number of its branch: the one that came to it; else the nearest
-    one within `reach` that came to none; else a new number."""
+    """Give each local minimum the number of its branch: of all minima and branches, within
+    `reach`, those are paired first that are nearest. Others get a new number."""
     r, count = front.branches, int(front.store[N_BRANCHES])
     for i in range(count):
         r[BRANCH_REALS * i + B_TAKEN] = 0.0
-    for k in range(n):
-        i = int(sets[SET_REALS * k + SET_BRANCH])
-        if i >= 0:
-            r[BRANCH_REALS * i + B_TAKEN] = 1.0
     at, which = nearest_free(front, minima, sets, n, reach)
     while at >= 0:
         sets[SET_REALS * at + SET_BRANCH], r[BRANCH_REALS * which + B_TAKEN] = which, 1.0

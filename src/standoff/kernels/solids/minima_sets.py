@@ -11,7 +11,6 @@ from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     AT,
     BOUND,
-    BRANCH,
     LEAF_A,
     LEAF_B,
     LEAST,
@@ -31,9 +30,9 @@ from standoff.kernels.solids.spatial_tolerances import (
 from standoff.kernels.solids.stationary import is_bowl, is_stationary
 
 # What is told of a local minimum: its nearest pair as a row of minima has it, with the best bound
-# that any of its pieces has; the number of that row; the branch, of the frame before, that came to
-# it, -1: none, and then its number; both points; and how many pairs of points its patch has, with
-# room for four of them. All points are in A's frame.
+# that any of its pieces has; the number of that row; the number of its branch, -1: not yet known;
+# both points; and how many pairs of points its patch has, with room for four of them. All points
+# are in A's frame.
 SET_ROW, SET_BRANCH, SET_SPOT, SET_PAIRS, SET_POINTS = 8, 9, 10, 16, 17
 SET_REALS = SET_POINTS + 4 * 6
 # Of a frame so many are told without a search for ties; more are looked for one by one.
@@ -105,7 +104,7 @@ def put_in_set(a, b, best, minima, i, sets, n):
     are, -1 where there is no room."""
     o = MINIMUM_REALS * i
     x, y = points_of(minima, o)
-    distance, bound, branch = minima[o], minima[o + BOUND], minima[o + BRANCH]
+    distance, bound = minima[o], minima[o + BOUND]
     at, least = n, distance
     for k in range(n):
         s = SET_REALS * k
@@ -120,15 +119,13 @@ def put_in_set(a, b, best, minima, i, sets, n):
             return -1
     else:
         bound, least = max(bound, sets[s + BOUND]), min(distance, sets[s])
-        if sets[s + SET_BRANCH] >= 0.0:
-            branch = sets[s + SET_BRANCH] if branch < 0.0 else min(branch, sets[s + SET_BRANCH])
     if at == n or tells_better(a, b, minima, o, sets, s, best[SIZE]):
         for k in range(BOUND):
             sets[s + k] = minima[o + k]
         for k in range(6):
             sets[s + SET_SPOT + k] = minima[o + POINTS + k]
         sets[s + SET_ROW], sets[s + SET_PAIRS] = i, 0.0
-    sets[s], sets[s + BOUND], sets[s + SET_BRANCH] = least, bound, branch
+    sets[s], sets[s + BOUND], sets[s + SET_BRANCH] = least, bound, -1.0
     return max(n, at + 1)
 
 

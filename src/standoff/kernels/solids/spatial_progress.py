@@ -18,10 +18,9 @@ ABOVE, MEETING, MOST_MINIMA, LOST, N_OPEN, MOST_OPEN, OF_LEAVES = 14, 15, 16, 17
 BEST_REALS = OPEN_ROWS = 21
 # What an open pair holds: leaves (-1 - node where it is a node), both boxes, its bound.
 OPEN_REALS = 11
-# What a minimum holds: distance, leaves, parameters, bound; where local ones are kept both points,
-# and the branch that came to it, -1: none.
-MINIMUM_REALS = 15
-BOUND, POINTS, BRANCH = 7, 8, 14
+# What a minimum holds: distance, leaves, parameters, bound; where local ones are kept both points.
+MINIMUM_REALS = 14
+BOUND, POINTS = 7, 8
 # What is counted: boxes that potentials are bounded over, steps of Newton's method, pairs of nodes,
 # pairs of leaves, bisections.
 BOXES, STEPS, NODE_PAIRS, LEAF_PAIRS, BISECTIONS = 0, 1, 2, 3, 4
@@ -78,7 +77,7 @@ def keep(best, minima, a, b, q, distance):
     minima[o], minima[o + 1], minima[o + 2] = distance, a.leaf, b.leaf
     for k in range(4):
         minima[o + 3 + k] = q[k]
-    minima[o + BOUND], minima[o + BRANCH] = 0.0, -1.0
+    minima[o + BOUND] = 0.0
     if best[ABOVE] > 0.0:
         x = leaf_jet(a.side, a.leaf, q[0], q[1])[0]
         y = leaf_jet(b.side, b.leaf, q[2], q[3])[0]

@@ -133,7 +133,7 @@ class SolidAnswers(KeepsReadOnly):
         target = None if path is None else checked_file(path)
         from standoff.solids.tracked.plot import minima_figure
 
-        figure = minima_figure(self)
+        figure = minima_figure(self.minima, self.distance)
         if target is not None:
             write_picture(figure, target)
         return figure

@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import not_installed
+from standoff.solids.tracked.events import LocalMinima
 
 try:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
-
-if TYPE_CHECKING:
-    from standoff.solids.tracked.answers import SolidAnswers
-    from standoff.solids.tracked.events import LocalMinima
 
 # Okabe and Ito's colours, told apart by eyes without red or green.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -28,14 +24,14 @@ MOST_NAMED = 12
 """Keys that are written beside their lines; of more only the lines are drawn."""
 
 
-def minima_figure(answers: SolidAnswers) -> Figure:
-    """Draw the distance of each local minimum over the frames: a ring where it begins, a cross
-    where it ends; the nearest is underlined."""
+def minima_figure(told: LocalMinima, distance: NDArray[np.float64]) -> Figure:
+    """Draw how far each local minimum is apart over the frames, a ring where it begins and a cross
+    where it ends; and below them the `distance` of each frame, of the nearest one."""
     figure = Figure(figsize=(8.0, 3.6), layout="constrained")
     axes = figure.subplots()
-    told, n = answers.minima, len(answers)
+    n = len(distance)
     axes.plot(
-        np.arange(n), np.where(answers.distance > 0.0, answers.distance, np.nan),
+        np.arange(n), np.where(distance > 0.0, distance, np.nan),
         color=NEAREST, lw=7.0, solid_capstyle="round", label="the nearest", zorder=1,
     )  # fmt: skip
     keys = [int(key) for key in np.unique(told.key) if key >= 0]
