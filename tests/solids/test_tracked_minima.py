@@ -209,3 +209,36 @@ def test_no_minimum_is_lost_in_drawn_motions(seed: int) -> None:
                     assert np.abs(told - each.distance).min(initial=np.inf) < 1e-8
             several += len(cold.minima) > 1
     assert several > 0
+
+
+def test_a_line_that_is_farther_than_the_nearest_is_one_minimum() -> None:
+    """A rod in the corner of a bracket: its end is at the wall, x = 0.4, nearer than its side, all
+    of which is as far from the floor, y = 0.4."""
+    rod = so.shapes.capsule(0.1, 0.6)
+    turn = Rotation.from_euler("y", np.pi / 2).as_matrix()
+    gaps = np.linspace(0.05, 0.15, 21)
+    poses = np.array([placed(turn, [0.4 + gap + 0.4, 0.7, 0.35]) for gap in gaps])
+    tracker = so.Tracker(bracket(), rod, minima=0.3)
+    _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
+    for gap, answer in zip(gaps, answers, strict=True):
+        assert [m.distance for m in answer.minima] == pytest.approx([gap, 0.2], abs=1e-9)
+    assert set(answers.minima.key) == {0, 1}
+
+
+def test_a_peg_in_its_hole_stays_in_the_compiled_loop() -> None:
+    """A play of a thousandth bends the gap so little that it may seem a continuum; and all of the
+    wall is within what is asked, which a query from nothing would take seconds for."""
+    bush, pin = tube(1.0, 2.0, 0.0, 3.0), peg(0.999, -1.0, 2.0)
+    poses = []
+    for k in range(1, 13):
+        tilt = Rotation.from_rotvec([2e-4 * np.cos(0.014 * k), 2e-4 * np.sin(0.02 * k), 0.0])
+        poses.append(placed(tilt.as_matrix(), [1e-4 * np.sin(0.026 * k), 1e-4, 1.5 - 1e-4 * k]))
+    tracker = so.Tracker(bush, pin, minima=2e-3)
+    state = tracker.start(STILL, poses[0])
+    assert state.proximity.certified
+    _, answers = tracker.run(state, STILL, np.array(poses))
+    assert answers.certified.all()
+    assert {len(answer.minima) for answer in answers} == {2}
+    assert len(answers._special) < 6  # frames that Python had to look at
+    cold = so.solids.distance(bush, pin, STILL, poses[-1])
+    assert answers.distance[-1] == pytest.approx(cold.distance, abs=1e-9)
