@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.solids import drawn
+from benchmarks.solids import drawn, posed
 from scipy.spatial.transform import Rotation
 
 import standoff as so
@@ -242,3 +242,21 @@ def test_a_peg_in_its_hole_stays_in_the_compiled_loop() -> None:
     assert len(answers._special) < 6  # frames that Python had to look at
     cold = so.solids.distance(bush, pin, STILL, poses[-1])
     assert answers.distance[-1] == pytest.approx(cold.distance, abs=1e-9)
+
+
+def test_many_minima_are_all_told_from_the_start_on() -> None:
+    """Two parts of 99 faces, of whose pieces thousands of pairs may hold a minimum."""
+    rng = np.random.default_rng(100)
+    a, b = drawn(100, rng), drawn(100, rng)
+    turn, shift = posed(a, b, 0.1, rng)
+    pose = placed(turn, shift)
+    below = so.solids.distance(a, b, STILL, pose).distance + 0.25
+    cold = so.solids.distance(a, b, STILL, pose, minima=below)
+    tracker = so.Tracker(a, b, minima=below)
+    state = tracker.start(STILL, pose)
+    _, found = tracker.step(state, STILL, pose)
+    for answer in (state.proximity, found):
+        assert answer.status is so.Status.CONVERGED
+        told = [m.distance for m in answer.minima]
+        assert told == pytest.approx([m.distance for m in cold.minima], abs=1e-9)
+    assert len(cold.minima) > 20

@@ -36,7 +36,7 @@ from standoff.kernels.solids.stationary import is_bowl, is_stationary
 SET_ROW, SET_BRANCH, SET_SPOT, SET_PAIRS, SET_POINTS = 8, 9, 10, 16, 17
 SET_REALS = SET_POINTS + 4 * 6
 # Of a frame so many are told without a search for ties; more are looked for one by one.
-MOST_SETS = 32
+MOST_SETS = 128
 
 
 @small

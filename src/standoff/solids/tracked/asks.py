@@ -81,8 +81,9 @@ class Asks(NamedTuple):
         answer = replace(answer, counts=answer.counts._replace(restarts=1))
         if answer.lower_bound <= 0.0:
             return answer, None
-        sought, senses = nearest.sought(pair), senses_of(answer.inside)
-        front = front_at(pair, pair.least(senses, sought), senses, sought, born)
+        senses = senses_of(answer.inside)
+        found = pair.least(senses, nearest.sought(pair))
+        front = front_at(pair, found, senses, self.sought(pair), born)
         frames = self.frames(front)
         frames.go(pair.relative[None], room_for(1))
         if self.options.minima is not None:

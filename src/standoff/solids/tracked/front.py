@@ -40,11 +40,11 @@ from standoff.solids.spatial.stationary import NONE, Fans
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING
 
 Array = NDArray[np.float64]
-MOST_ROWS = 1 << 14
+MOST_ROWS = 1 << 16
 """Rows that a front may have: more are not cut any further, so that an interval is told."""
 MOST_BRANCHES = 1 << 8
 """Local minima that are followed from frame to frame; of more the nearest ones."""
-MOST_TOLD = 1 << 11
+MOST_TOLD = 1 << 12
 """Local minima that one call of the kernel tells, of all its frames."""
 NO_ROWS = np.empty((0, SET_REALS))
 
