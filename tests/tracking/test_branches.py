@@ -189,7 +189,7 @@ def test_every_reason_is_counted_by_its_name_and_has_a_sentence():
         counts = counts.with_one(reason)
         assert counts.of(reason) == 1
         assert reason.sentence.endswith(".")
-    assert len({reason.sentence for reason in (*Birth, *End)}) == len(counts) == 8
+    assert len({reason.sentence for reason in (*Birth, *End)}) == len(counts) == 10
     assert set(counts) == {1}
     assert (counts.born, counts.ended) == (len(Birth), len(End))
 

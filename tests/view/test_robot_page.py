@@ -64,15 +64,15 @@ def test_a_configuration_and_its_sliders(bar: so.Robot) -> None:
             ask(lambda number=number, value=value: page.turn(number, value))
             q = [np.radians(100), 0.3] if q is None else q
             until(lambda q=q: bool(np.isclose(told(page), gap(q), atol=1e-12, rtol=0.0)))
-            assert stage.q == pytest.approx(q)
+            until(lambda q=q: stage.q == pytest.approx(q))
             drawn = stage.picture._bodies[list(bar.world.bodies).index("ball")].frame.position
             assert drawn == pytest.approx(bar.poses(q)[bar.geoms.names.index("ball"), :3, 3])
         until(lambda: page.panel._back.visible)
         ask(page.back)
         until(lambda: bool(np.isclose(told(page), gap(first), atol=1e-12, rtol=0.0)))
         until(lambda: turn.value == pytest.approx(0.3))
-        assert stage.q == pytest.approx(first)
-        assert not page.panel._back.visible
+        until(lambda: stage.q == pytest.approx(first))
+        until(lambda: not page.panel._back.visible)
 
 
 def test_a_path_is_played_with_its_clearance(bar: so.Robot) -> None:
