@@ -8,7 +8,6 @@ import pytest
 import standoff as so
 from standoff.geometry import ConicArc, Line
 from standoff.solids import distance
-from standoff.solids.answer import Overlap
 from standoff_studies.soak import (
     blocks,
     planar_drawn,
@@ -125,7 +124,7 @@ def raised(told):
 
 
 def larger(told):
-    ball = Overlap(told.overlap.common_point, 1.001 * told.overlap.radius + 1e-8)
+    ball = told.overlap._replace(radius=1.001 * told.overlap.radius + 1e-8)
     return replace(told, overlap=ball, distance=-2.0 * ball.radius)
 
 

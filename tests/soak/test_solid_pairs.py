@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from standoff.solids.answer import Overlap
 from standoff.solids.asked import Asked
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
@@ -192,7 +191,7 @@ def within(told):
 
 
 def larger(told):
-    ball = Overlap(told.overlap.common_point, 1.0001 * told.overlap.radius + 1e-9)
+    ball = told.overlap._replace(radius=1.0001 * told.overlap.radius + 1e-9)
     return replace(told, overlap=ball, distance=-2.0 * ball.radius, upper_bound=-2.0 * ball.radius)
 
 

@@ -34,7 +34,7 @@ def judge(a: Solid, b: Solid, rng: np.random.Generator, poses: int) -> None:
         answer = spatial_distance(a, b, None, (turn, move))
         least = tree.query(spots @ turn.T + move)[0].min()
         if answer.status is Status.OVERLAPPING:
-            centre, radius = answer.overlap
+            centre, radius = answer.overlap.common_point, answer.overlap.radius
             inside = a.contains([centre])[0] and b.contains([(centre - move) @ turn])[0]
             assert inside
             assert tree.query(centre)[0] >= radius - 1e-9

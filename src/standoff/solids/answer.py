@@ -32,7 +32,8 @@ class NearestPair(NamedTuple):
     distance : float
         Length; negative in an overlap, where moving B by -distance * normal parts this place.
     lower_bound : float
-        Proven: no two points of the two pieces of boundary around it are closer.
+        Proven: no two points of the two pieces of boundary around it are closer; in an overlap of
+        space these do not meet where B is moved by -lower_bound * normal. -inf: not proven.
     point_a, point_b : (3,) arrays
         World axes.
     normal : (3,) array
@@ -88,12 +89,18 @@ class Overlap(NamedTuple):
     common_point : (3,) array
         Inside both, world axes.
     radius : float
-        The ball of this radius round it is inside both: no translation shorter than twice the
-        radius parts the solids.
+        The ball of this radius round it is inside both; 0 where none was found.
+    depth : float
+        No translation shorter than this parts the solids: twice the radius, or more.
+    parting : (3,) array, optional
+        A vector, world axes: B, moved by it, is proven to be apart from A. None where that was not
+        asked, or is not proven.
     """
 
     common_point: Array
     radius: float
+    depth: float
+    parting: Array | None = None
 
 
 class OpenPair(NamedTuple):
@@ -162,12 +169,12 @@ class SolidProximity(KeepsReadOnly, PlainData):
     status : Status
     distance : float
         Between the witness points while apart; of a solid inside the other's material the least
-        wall between both boundaries; in an overlap ``-2 * overlap.radius``, a depth that no
-        translation is less than.
+        wall between both boundaries; in an overlap that of the deepest place, below 0, where there
+        is one (`minima`), and at most ``-overlap.depth``.
     lower_bound, upper_bound : float
         Proven: the true value of what ``distance`` stands for is neither less nor more. In an
-        overlap the upper bound is the distance, and the lower one minus infinity unless a
-        translation was found that parts the solids.
+        overlap no translation shorter than ``-upper_bound`` parts the solids, and one as long as
+        ``-lower_bound`` does; minus infinity where none is known that does.
     slack : float
         How far the given boundaries may be from what they stand for, both together [length].
     point_a, point_b : (3,) arrays

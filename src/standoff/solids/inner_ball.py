@@ -35,8 +35,8 @@ def ball_inside(solid: Any, pose: Pose, point: Array, normal: Array) -> Overlap:
     radii = _radii(solid, np.asarray((centres - pose.translation) @ pose.rotation))
     k = int(np.argmax(radii))
     if radii[k] > 0.0:
-        return Overlap(centres[k], float(radii[k]))
-    return Overlap(np.array(point), 0.0)
+        return Overlap(centres[k], float(radii[k]), 2.0 * float(radii[k]))
+    return Overlap(np.array(point), 0.0, 0.0)
 
 
 def _radii(solid: Any, points: Array) -> Array:

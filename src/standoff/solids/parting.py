@@ -31,6 +31,24 @@ def way_out(normals: Array) -> Array | None:
     return np.asarray(mean / size)
 
 
+def least_way_out(normals: Array, depths: Array) -> Array | None:
+    """The shortest vector whose components along unit normals (n, 3) are at least `depths` (n,),
+    all above 0; None where there is none.
+
+    A problem of least distance, by its dual (Lawson and Hanson, Solving Least Squares Problems,
+    chapter 23).
+    """
+    if not len(normals):
+        return None
+    scale = float(depths.max())
+    system = np.vstack([normals.T, depths / scale])
+    weights, _ = scipy.optimize.nnls(system, np.array([0.0, 0.0, 0.0, 1.0]))
+    rest = np.array([0.0, 0.0, 0.0, 1.0]) - system @ weights
+    if float(np.linalg.norm(rest)) <= NO_WAY_OUT:
+        return None
+    return np.asarray(-scale * rest[:3] / rest[3])
+
+
 def parted(normals: Array, tolerance: float, apart: Callable[[Array], bool]) -> float:
     """A length by which moving B is proven to part two solids; inf where that is not proven.
 

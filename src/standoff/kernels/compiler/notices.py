@@ -43,7 +43,7 @@ WORK = {
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 7, 45, 3),
     "world": Work("worlds of many bodies", 5, 45, 10),
-    "solids": Work("solids in space", 34, 44, 13),
+    "solids": Work("solids in space", 36, 50, 15),
     "planar": Work("planar solids", 15, 20, 4),
 }
 

@@ -28,6 +28,7 @@ MODULES = (
     "standoff.kernels.entries.solids",
     "standoff.kernels.entries.minima",
     "standoff.kernels.entries.tracked_solids",
+    "standoff.kernels.entries.solid_contact",
 )
 """The modules that have entries."""
 
@@ -76,11 +77,12 @@ def prepare_servo() -> None:
 
 def prepare_tracked_solids() -> None:
     """Prepare what calls frames of two solids, and queries from nothing."""
-    from standoff.kernels.entries import minima, solids, tracked_solids
+    from standoff.kernels.entries import minima, solid_contact, solids, tracked_solids
 
     needed = [tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point]
     needed += [tracked_solids.number_minima, minima.stationary, minima.one_place]
-    _prepare_each([*needed, minima.span_patches])
+    needed += [minima.span_patches, solid_contact.signed_minima, solid_contact.pieces_parted]
+    _prepare_each(needed)
 
 
 def _prepare_each(needed: Sequence[Any]) -> None:

@@ -1,12 +1,12 @@
 """The local minima among the pairs of points that were found, each once, the nearest first."""
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import norm, scale, sub
+from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_minimum import jets_at
-from standoff.kernels.solids.spatial_pieces import leaf_ints, leaf_jet
+from standoff.kernels.solids.spatial_pieces import leaf_ints
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     AT,
@@ -16,9 +16,11 @@ from standoff.kernels.solids.spatial_progress import (
     LEAST,
     MINIMUM_REALS,
     N_MINIMA,
+    NORMAL,
     POINTS,
     SIZE,
     TOLERANCE,
+    put_places,
 )
 from standoff.kernels.solids.spatial_tolerances import (
     FLAT_VALLEY,
@@ -48,15 +50,6 @@ def is_one_place(x, y, distance, other_x, other_y, other_distance, size):
 
 
 @kernel
-def put_points(a, b, minima, o):
-    """Both points of a row, in A's frame, into it."""
-    x = leaf_jet(a, int(minima[o + 1]), minima[o + 3], minima[o + 4])[0]
-    y = leaf_jet(b, int(minima[o + 2]), minima[o + 5], minima[o + 6])[0]
-    for k in range(3):
-        minima[o + POINTS + k], minima[o + POINTS + 3 + k] = x[k], y[k]
-
-
-@kernel
 def points_of(minima, o):
     return read_vector(minima, o + POINTS), read_vector(minima, o + POINTS + 3)
 
@@ -72,8 +65,7 @@ def is_nearest(best, minima, o):
 
 @kernel
 def is_minimum(a, b, fans, minima, o):
-    x, y = points_of(minima, o)
-    n = scale(1.0 / minima[o], sub(y, x))
+    n = read_vector(minima, o + NORMAL)
     q = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     leaves = int(minima[o + 1]), int(minima[o + 2])
     if not is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM):
@@ -149,7 +141,7 @@ def gather(a, b, fans, best, minima, wider, sets):
     n, most = 0, max(best[LEAST] + best[TOLERANCE], best[ABOVE] - wider)
     for i in range(int(best[N_MINIMA])):
         o = MINIMUM_REALS * i
-        put_points(a, b, minima, o)
+        put_places(a, b, minima, o)
         if minima[o] > most:
             continue
         if minima[o] <= SURE_NORMAL * best[SIZE]:

@@ -4,6 +4,7 @@ from math import atan2, inf, sqrt
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.frames import frame_across
+from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids.minima_sets import (
@@ -16,6 +17,7 @@ from standoff.kernels.solids.minima_sets import (
 from standoff.kernels.solids.spatial_progress import (
     MINIMUM_REALS,
     N_MINIMA,
+    NORMAL,
     POINTS,
     SIZE,
     TOLERANCE,
@@ -43,8 +45,7 @@ def middle_of(minima, o):
 
 @kernel
 def normal_of(minima, o):
-    x, y = points_of(minima, o)
-    return scale(1.0 / minima[o], sub(y, x)) if minima[o] > 0.0 else (0.0, 0.0, 0.0)
+    return read_vector(minima, o + NORMAL)
 
 
 @kernel

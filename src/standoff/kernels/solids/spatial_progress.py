@@ -18,9 +18,10 @@ ABOVE, MEETING, MOST_MINIMA, LOST, N_OPEN, MOST_OPEN, OF_LEAVES = 14, 15, 16, 17
 BEST_REALS = OPEN_ROWS = 21
 # What an open pair holds: leaves (-1 - node where it is a node), both boxes, its bound.
 OPEN_REALS = 11
-# What a minimum holds: distance, leaves, parameters, bound; where local ones are kept both points.
-MINIMUM_REALS = 14
-BOUND, POINTS = 7, 8
+# What a minimum holds: distance, leaves, parameters, bound; where local ones are kept both points
+# and the normal from A to B, 0 where the points are one.
+MINIMUM_REALS = 17
+BOUND, POINTS, NORMAL = 7, 8, 14
 # What is counted: boxes that potentials are bounded over, steps of Newton's method, pairs of nodes,
 # pairs of leaves, bisections.
 BOXES, STEPS, NODE_PAIRS, LEAF_PAIRS, BISECTIONS = 0, 1, 2, 3, 4
@@ -61,6 +62,17 @@ def make_room(best, minima):
 
 
 @kernel
+def put_places(a, b, minima, o):
+    """Both points of a row, in A's frame, and their normal into it."""
+    x = leaf_jet(a, int(minima[o + 1]), minima[o + 3], minima[o + 4])[0]
+    y = leaf_jet(b, int(minima[o + 2]), minima[o + 5], minima[o + 6])[0]
+    share = 1.0 / minima[o] if minima[o] > 0.0 else 0.0
+    for k in range(3):
+        minima[o + POINTS + k], minima[o + POINTS + 3 + k] = x[k], y[k]
+        minima[o + NORMAL + k] = share * (y[k] - x[k])
+
+
+@kernel
 def keep(best, minima, a, b, q, distance):
     """Keep a pair of points of two parts, which are on both solids."""
     if distance < best[LEAST]:
@@ -79,10 +91,7 @@ def keep(best, minima, a, b, q, distance):
         minima[o + 3 + k] = q[k]
     minima[o + BOUND] = 0.0
     if best[ABOVE] > 0.0:
-        x = leaf_jet(a.side, a.leaf, q[0], q[1])[0]
-        y = leaf_jet(b.side, b.leaf, q[2], q[3])[0]
-        for k in range(3):
-            minima[o + POINTS + k], minima[o + POINTS + 3 + k] = x[k], y[k]
+        put_places(a.side, b.side, minima, o)
     best[N_MINIMA] += 1.0
 
 

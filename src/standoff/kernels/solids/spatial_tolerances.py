@@ -79,3 +79,8 @@ VALLEY: Final = 1e-14
 """Of the sizes: pairs that differ by less in their distance are as near as each other."""
 ONE_PATCH: Final = 0.95
 """Cosine, of 18 degrees: pairs of points whose normals differ by more belong to no one patch."""
+CONTACT_ERROR: Final = 1e-9
+"""Relative, of the sizes and of unit tangents: an error of the contact-regular form below which its
+Newton's method has come to an end, some thousand roundings of the least of its pivots."""
+PARALLEL_EDGES: Final = 1e-5
+"""Sine: edges at a smaller angle have no common normal of their own; `PIVOT` is its square."""

@@ -331,7 +331,7 @@ def common_ball(pair: Queried, searched: Searched) -> Overlap | None:
     radius -= pair.roundoff
     if not radius > 0.0:
         return None
-    return Overlap(pair.world((x, y)), float(radius))
+    return Overlap(pair.world((x, y)), float(radius), 2.0 * float(radius))
 
 
 def _overlapping(

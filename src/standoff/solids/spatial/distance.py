@@ -2,39 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from standoff.bodies.features import NO_FEATURE
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
-from standoff.solids.answer import (
-    MOST_OPEN,
-    Continuum,
-    NearestPair,
-    OpenPair,
-    Overlap,
-    PointPair,
-    SolidProximity,
-)
+from standoff.solids.answer import MOST_OPEN, Continuum, Overlap, PointPair, SolidProximity
 from standoff.solids.asked import DEFAULT, Asked
 from standoff.solids.parting import parted
+from standoff.solids.spatial.contact import signed_minima_of
 from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.left_open import around, open_pairs
 from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.overlap import ball_beside, common_ball
+from standoff.solids.spatial.overlapping import contact_reach, told_overlapping
 from standoff.solids.spatial.pair import Place, PlacedPair, references_of
 from standoff.solids.spatial.patches import patches_of
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
+from standoff.solids.spatial.told import UNDEFINED, Inside, Told, answer_of
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -45,24 +38,9 @@ MOST_COMMON = 8
 # Starts of the ascent to the largest common ball.
 STARTS = 3
 MOST_TIES = 64
-UNDEFINED = Smoothness.UNDEFINED
 # Of the tolerance: rounding of bounds that are proven to it.
 PROVEN = 1.001
 OUTSIDE = (S.OUTSIDE, S.OUTSIDE)
-Inside = Literal["A", "B", ""]
-
-
-class Told(NamedTuple):
-    """What an answer says beside its numbers."""
-
-    status: Status
-    smoothness: Smoothness = UNDEFINED
-    continuum: Continuum | None = None
-    overlap: Overlap | None = None
-    inside: Inside = ""
-    open: tuple[OpenPair, ...] = ()
-    n_open: int = 0
-    patches: Sequence[tuple[PointPair, ...]] = ()
 
 
 def spatial_distance(
@@ -230,9 +208,29 @@ def _meeting(
             if other.may_hold(spot):
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
+    told = _overlapping(pair, found, overlap, sought)
+    if told:
+        return told
     if overlap:
         return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
+
+
+def _overlapping(
+    pair: PlacedPair, found: Found, ball: Overlap | None, sought: Sought
+) -> SolidProximity | None:
+    """The answer by the minima of the signed distance, where these prove that the solids overlap.
+    `ball`: one that is inside both, where it is known."""
+    reach, minima = contact_reach(pair, sought), sought.above - sought.patch
+    signed = signed_minima_of(pair, reach)
+    told = told_overlapping(
+        pair, signed, reach, minima or None, ball, lambda by: _is_apart(pair.moved(by))
+    )
+    if told is None:
+        return None
+    answer = told[0]
+    counts = found.told._replace(evaluations=found.told.evaluations + answer.counts.evaluations)
+    return replace(answer, counts=counts)
 
 
 def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
@@ -286,45 +284,3 @@ def _is_apart(pair: PlacedPair) -> bool:
         return False
     found = pair.least(OUTSIDE, Sought(PROOF_TOLERANCE * pair.size))
     return not found.met and found.lower > 0.0
-
-
-UNSEEN = NearestPair(
-    np.nan, np.nan, *(np.full(3, np.nan),) * 3, NO_FEATURE, NO_FEATURE, (), ()
-)  # fmt: skip
-
-
-def answer_of(pair: PlacedPair, found: Found, places: list[Place], told: Told) -> SolidProximity:
-    distance, lower, upper = found.upper, found.lower, found.upper
-    if told.overlap:
-        distance = upper = -2.0 * told.overlap.radius
-        lower = -np.inf
-    minima = tuple(pair.nearest_pair(p, lower) for p in places)
-    if told.patches:
-        named = zip(minima, told.patches, strict=True)
-        minima = tuple(each._replace(patch=patch) for each, patch in named)
-    first = minima[0] if minima else UNSEEN
-    if not minima:
-        distance = upper = np.inf
-    gradient = np.full(12, np.nan)
-    if told.smoothness is not UNDEFINED:
-        gradient = pair.gradient(places[0])
-    return SolidProximity(
-        status=told.status, distance=distance, lower_bound=lower - pair.slack,
-        upper_bound=upper + pair.slack, slack=pair.slack, point_a=first.point_a,
-        point_b=first.point_b, normal=first.normal, feature_a=first.feature_a,
-        feature_b=first.feature_b, parameters_a=first.parameters_a,
-        parameters_b=first.parameters_b, minima=minima, continuum=told.continuum,
-        overlap=told.overlap, inside=told.inside, open=told.open, gradient_rows=gradient,
-        smoothness=told.smoothness, counts=found.told._replace(open=told.n_open), poses=pair.poses,
-        cavity=_cavity(pair, told.status, first),
-    )  # fmt: skip
-
-
-def _cavity(pair: PlacedPair, status: Status, nearest: NearestPair) -> Inside:
-    """Which solid is in a cavity of the other: the nearest point is then on the cavity's shell, as
-    nothing is between."""
-    if status not in (Status.CONVERGED, Status.CONTINUUM):
-        return ""
-    if pair.b.in_cavity(nearest.feature_b):
-        return "A"
-    return "B" if pair.a.in_cavity(nearest.feature_a) else ""

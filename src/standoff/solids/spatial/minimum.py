@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import boundary_distance, solid_point
@@ -111,7 +112,14 @@ def least_distance(
 ) -> Found:  # fmt: skip
     """Between two packed solids; `pose` (12,) is B's in A's frame, R by rows and p."""
     asked = Sought(PROOF_TOLERANCE * size) if sought is None else sought
-    best, minima = started(asked, size, float(np.linalg.norm(pose[9:])))
+    return found_of(*searched(packed_a, packed_b, pose, senses, size, asked))
+
+
+def searched(
+    packed_a: Any, packed_b: Any, pose: Array, senses: tuple[int, int], size: float, sought: Sought
+) -> tuple[Array, Array, NDArray[np.int64]]:
+    """What the compiled search fills: (best, minima, counts)."""
+    best, minima = started(sought, size, float(np.linalg.norm(pose[9:])))
     counts = np.zeros(8, dtype=np.int64)
     boundary_distance(
         (packed_a, packed_b),
@@ -122,7 +130,12 @@ def least_distance(
         _scratch(threading.get_ident()),
         counts,
     )
-    return found_of(best, minima, counts)
+    return best, minima, counts
+
+
+def nearest_row(best: Array) -> Array:
+    """The nearest pair of points as a row of minima has it."""
+    return np.array([best[C.LEAST], best[C.LEAF_A], best[C.LEAF_B], *best[C.AT : C.AT + 4], 0.0])
 
 
 def found_of(best: Array, minima: Array, counts: Any) -> Found:
@@ -133,7 +146,7 @@ def found_of(best: Array, minima: Array, counts: Any) -> Found:
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     met = bool(best[C.MET])
     lower = 0.0 if met else max(0.0, min(upper - tolerance, float(best[C.OPEN])))
-    row = np.array([upper, best[C.LEAF_A], best[C.LEAF_B], *best[C.AT : C.AT + 4], 0.0])
+    row = nearest_row(best)
     left = best[C.OPEN_ROWS :].reshape(-1, C.OPEN_REALS)[: int(best[C.N_OPEN])]
     left = left[np.argsort(left[:, -1], kind="stable")]
     return Found(

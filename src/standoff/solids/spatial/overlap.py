@@ -27,7 +27,9 @@ def common_ball(pair: PlacedPair, starts: Array, least: float) -> Overlap | None
         depth, point = _climbed(pair, start, FIRST_STEP)
         if depth > best:
             best, where = depth, point
-    return Overlap(where, best) if best > least else ball_beside(pair, starts[:1], least)
+    return (
+        Overlap(where, best, 2.0 * best) if best > least else ball_beside(pair, starts[:1], least)
+    )
 
 
 def ball_beside(pair: PlacedPair, starts: Array, least: float) -> Overlap | None:
@@ -36,7 +38,7 @@ def ball_beside(pair: PlacedPair, starts: Array, least: float) -> Overlap | None
     for start in starts:
         depth, point = _beside(pair, start, least)
         if depth > least:
-            return Overlap(point, depth)
+            return Overlap(point, depth, 2.0 * depth)
     return None
 
 

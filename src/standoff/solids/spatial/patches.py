@@ -41,13 +41,15 @@ def patches_of(
 def rows_of(
     pair: PlacedPair, minima: Sequence[Place], others: Sequence[Place] = ()
 ) -> tuple[Array, Array]:
-    """Local minima as the kernels have them: rows (n, 14) of these and of other pairs, and of sets
+    """Local minima as the kernels have them: rows (n, 17) of these and of other pairs, and of sets
     (m, 41)."""
     places = [*minima, *others]
     rows = np.zeros((len(places), C.MINIMUM_REALS))
     for row, place in zip(rows, places, strict=True):
         row[: C.POINTS] = place.row[: C.POINTS]
-        row[C.POINTS :] = [*pair.in_a(place.point_a), *pair.in_a(place.point_b)]
+        row[C.POINTS :] = [
+            *pair.in_a(place.point_a), *pair.in_a(place.point_b), *(pair.ra.T @ place.normal)
+        ]  # fmt: skip
     sets = np.zeros((len(minima), SET_REALS))
     for k, place in enumerate(minima):
         sets[k, : C.POINTS], sets[k, SET_ROW], sets[k, SET_BRANCH] = place.row[: C.POINTS], k, -1.0

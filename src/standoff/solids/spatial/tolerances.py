@@ -37,6 +37,9 @@ CONE_ROUNDINGS: Final = 1e-12
 """Radians: added to a cone round several for the rounding of angles."""
 LAST_CLIMB: Final = 1e-5
 """Of the size: the last step of the ascent to a ball inside both solids."""
+CONTACT_REACH: Final = 0.02
+"""Of the sizes of both solids: how deep an overlap is looked for place by place where no more is
+asked."""
 LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 """Of the size: steps from a common point of both boundaries among which one inside both is
 sought."""

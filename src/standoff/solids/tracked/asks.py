@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
+from standoff.solids.spatial.contact import signed_minima_of
 from standoff.solids.spatial.distance import (
     Inside,
     reach_of_minima,
@@ -19,6 +20,7 @@ from standoff.solids.spatial.distance import (
     told_apart,
 )
 from standoff.solids.spatial.minimum import Sought
+from standoff.solids.spatial.overlapping import contact_reach, told_overlapping
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import rows_of
 from standoff.solids.spatial.solid_model import SolidModel
@@ -30,6 +32,7 @@ from standoff.solids.tracked.front import (
     Front,
     Minima,
     front_at,
+    front_in_contact,
     room_for,
 )
 
@@ -93,6 +96,23 @@ class Asks(NamedTuple):
             )
             answer = replace(told, counts=counts)
         return answer, frames.kept()
+
+    def met(
+        self, pair: PlacedPair, front: Front | None, born: int, motion: float
+    ) -> tuple[SolidProximity, Front, NDArray[np.int64]] | None:
+        """The answer of a frame in which the solids overlap, the front after it, and which branches
+        have come to the place of another one; None where that is not proven."""
+        sought = self.sought(pair)
+        reach = contact_reach(pair, sought)
+        frames = self.frames(front or front_in_contact(pair, sought, born))
+        signed = signed_minima_of(pair, reach, frames.work[:5])
+        told = told_overlapping(pair, signed, reach, self.options.minima)
+        if told is None:
+            return None
+        answer, places = told
+        if self.options.minima is not None:
+            answer = numbered(answer, frames.number(*rows_of(pair, places), motion))
+        return answer, frames.kept_in_contact(pair.relative, places[0].row), frames.merged()
 
     def apart(
         self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float

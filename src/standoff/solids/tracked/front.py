@@ -66,6 +66,9 @@ class Front(NamedTuple):
         As ``kernels.solids.front_branches`` does.
     senses : (2,) array of int
         From where each boundary is seen.
+    met : (12,) array, optional
+        B's pose in A's frame in the last frame, if the solids overlapped in it: the rest is of the
+        last one in which they were apart.
     """
 
     before: Array
@@ -75,6 +78,7 @@ class Front(NamedTuple):
     rows: Array
     branches: Array
     senses: NDArray[np.int64]
+    met: Array | None = None
 
     @property
     def born(self) -> int:
@@ -150,6 +154,13 @@ def front_at(
     return Front(before, best, store, empty, empty, empty, np.array(senses, dtype=np.int64))
 
 
+def front_in_contact(pair: PlacedPair, sought: Sought, born: int) -> Front:
+    """A front that is yet to be made, of solids that overlap."""
+    row = np.zeros(C.MINIMUM_REALS)
+    nowhere = Found(0.0, 0.0, 0.0, True, row[None], row, row[None], 0, (0, 0, 0, 0, 0), 0)
+    return front_at(pair, nowhere, (OUTSIDE, OUTSIDE), sought, born)
+
+
 class Frames:
     """Frames one after the other from a front on, which stays as it is.
 
@@ -165,7 +176,7 @@ class Frames:
         deadline: int,
         minima: Minima = NO_MINIMA,
     ) -> None:
-        self.packed, self.fans = packed, minima.fans
+        self.packed, self.fans, self.done = packed, minima.fans, 1
         self.asked = np.array([tolerance, PROOF_ROUNDING, minima.above, minima.wider])
         self.work = _room(threading.get_ident())
         store, keys, rows, branches = self.work[:4]
@@ -175,6 +186,7 @@ class Frames:
         keys[: len(front.keys)] = front.keys
         rows[: len(front.rows)] = front.rows
         branches[: len(front.branches)] = front.branches
+        store[N_MERGED] = 0.0
         if front.best[C.ABOVE] < minima.above:  # planes' faces may have shut out what is asked now
             store[N_ROWS] = 0.0
 
@@ -214,7 +226,7 @@ class Frames:
             branches[: BRANCH_REALS * int(store[N_BRANCHES])].copy(),
             self.senses,
         )
-        for array in made:
+        for array in made[:-1]:
             array.flags.writeable = False
         return made
 
@@ -240,9 +252,21 @@ class Frames:
         numbers[:n] = sets[:n, SET_BRANCH]
         return numbers
 
+    def kept_in_contact(self, at: Array, row: Array) -> Front:
+        """The front after a frame in which the solids overlap, with B at a pose (12,) in A's frame,
+        and points of both boundaries as a row of minima has them."""
+        self.best[C.LEAF_A : C.AT + 4] = row[1:7]
+        return self.kept()._replace(met=at)
+
     def found(self) -> Found:
         """What the last frame found, as a search does."""
         return found_of(self.best, self.work.minima, self.work.counts)
+
+
+def moved_by(before: Array, now: Array, size: float) -> float:
+    """A bound of how far a point of B, of a size, has moved between two poses (12,), length."""
+    turn = float(np.linalg.norm(now[:9] - before[:9]))
+    return float(np.linalg.norm(now[9:] - before[9:])) + turn * size
 
 
 def room_for(n: int) -> Array:

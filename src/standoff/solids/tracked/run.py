@@ -21,7 +21,7 @@ from standoff.solids.spatial.patches import patch_told
 from standoff.solids.tracked.answers import SolidAnswers, world_places
 from standoff.solids.tracked.asks import Asks, numbered
 from standoff.solids.tracked.events import Course, LocalMinima, MinimumEvent, events_of, minima_of
-from standoff.solids.tracked.front import NO_ROWS, Frames, Front, room_for
+from standoff.solids.tracked.front import NO_ROWS, Frames, Front, moved_by, room_for
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -86,11 +86,33 @@ class Run:
         """All frames; the front after the last."""
         front, at = self.state.front, 0
         while at < len(self.relative):
-            if front is None:
-                front, at = self._ask(at), at + 1
+            if front is None or front.met is not None:
+                front, at = self._meet(front, at)
             else:
                 front, at = self._gone(front, at)
         return front
+
+    def _meet(
+        self, front: Front | None, at: int, motion: float = np.nan
+    ) -> tuple[Front | None, int]:
+        """A frame in which the solids may overlap, after a motion, length, and those after it if
+        they do not; the front after them."""
+        pair, last = self._pair(at), front.met if front else None
+        if last is not None:
+            motion = moved_by(last, pair.relative, self.asks.b.size)
+        told = self.asks.met(pair, front, self.born, 0.0 if np.isnan(motion) else motion)
+        if told is not None:
+            self.special[at], front, merged = told
+            for _, key, into in merged.tolist():
+                self.merged[at, key] = into
+            self.born = front.born
+            self.told[at, T.MOTION], self.told[at, T.ANEW] = motion, 0.0
+            return front, at + 1
+        if front is None or last is None:
+            return self._ask(at), at + 1
+        front, after = self._gone(front._replace(met=None), at)
+        self.told[at, T.MOTION] = motion  # and not since they were apart
+        return front, after
 
     def _gone(self, front: Front, at: int) -> tuple[Front | None, int]:
         """Frames from a front on, as far as they are answered by it; the front after them."""
@@ -104,7 +126,7 @@ class Run:
                 self.merged[first + k, key] = into
             if not settled:
                 self.born = frames.born
-                return self._ask(at - 1), at
+                return self._meet(frames.kept(), at - 1, float(self.told[at - 1, T.MOTION]))
         return frames.kept(), at
 
     def _pair(self, k: int) -> PlacedPair:

@@ -272,10 +272,11 @@ def _ball_faults(case: Case) -> list[tuple[str, str]]:
     radius = told.overlap.radius
     shallow = max(case.depths(told.overlap.common_point)) + radius
     found = []
-    if not (radius > 0.0 and shallow <= noise):
+    if not (radius >= 0.0 and shallow <= noise):
         found.append(("ball", f"radius {radius!r} reaches out by {shallow!r}"))
-    if not abs(told.distance + 2.0 * radius) <= noise:
-        found.append(("ball", f"radius {radius!r}, distance {told.distance!r}"))
+    least = told.overlap.depth
+    if not (2.0 * radius <= least + noise and abs(told.upper_bound + least) <= noise):
+        found.append(("ball", f"radius {radius!r}, depth {least!r}, {told.upper_bound!r}"))
     return found
 
 

@@ -1,0 +1,151 @@
+"""A local minimum of the signed distance of two boundaries, apart, in contact and in overlap alike.
+
+Newton's method on the contact-regular form y = (q, n, d): n is a normal of both boundaries, and
+y - x = d n. Its matrix keeps its rank where the points come together, so that a minimum is the same
+smooth function of the pose on both sides of contact. In an overlap d is below 0: B, moved by -d
+along n, only touches there.
+"""
+
+from standoff.kernels.algebra.symmetric import symmetric_eigen
+from standoff.kernels.algebra.vectors import add, cross, dot, norm, scale, sub, unit
+from standoff.kernels.compiler.decorators import (
+    kernel,
+    reals_on_stack,
+    shared,
+    stack_matrix,
+    stack_reals,
+)
+from standoff.kernels.pair.contact_newton import (
+    contact_scales,
+    scaled_jacobian,
+    scaled_residual,
+    solve_contact,
+)
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.spatial_minimum import jets_at, nearest
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, outward_normal
+from standoff.kernels.solids.spatial_progress import ball_round, middle
+from standoff.kernels.solids.spatial_tolerances import (
+    CONTACT_ERROR,
+    FLAT_VALLEY,
+    PARALLEL_EDGES,
+    SURE_NORMAL,
+)
+from standoff.kernels.tolerances import CONTACT_STEPS
+from standoff.kernels.values import Pose
+
+# Eigenvalues of the contact-regular matrix of a minimum: so many above 0, and so many below. Those
+# of parameters that a feature does not have count above.
+ABOVE_ZERO, BELOW_ZERO = 5, 3
+# Of the first steps of Newton's method so many may make its error greater, and by how much.
+FREE_STEPS, MAY_GROW = 3, 10.0
+
+
+@kernel
+def first_normal(a, leaf_a, ja, b, leaf_b, jb, size):
+    """A unit normal from A to B of two features at a pair of their points, in A's frame; of two
+    edges one of the two; 0 where they have none, as parallel edges that touch."""
+    if a.own[leaf_ints(a, leaf_a) + S.DIM] == 2:
+        return outward_normal(a, leaf_a, ja)
+    if b.own[leaf_ints(b, leaf_b) + S.DIM] == 2:
+        return scale(-1.0, outward_normal(b, leaf_b, jb))
+    n = cross(ja[1], jb[1])
+    area = norm(n)
+    if area > PARALLEL_EDGES * norm(ja[1]) * norm(jb[1]):
+        return scale(1.0 / area, n)
+    delta = sub(jb[0], ja[0])
+    length = norm(delta)
+    return scale(1.0 / length, delta) if length > SURE_NORMAL * size else ZERO
+
+
+@kernel
+def moved_side(side, by):
+    """The same solid, moved by a vector of A's frame."""
+    pose = Pose(side.pose.R, add(side.pose.p, by))
+    return S.Side(side.ints, side.reals, side.own, side.numbers, pose, side.sense)
+
+
+@kernel
+def nearest_moved_apart(a, b, counts):
+    """Parameters of the nearest points of two parts, of which one is moved away along a normal of
+    one by as much as both are long: a start from which Newton's method is near a common normal."""
+    u, v = middle(a.box)
+    s, t = middle(b.box)
+    q = (u, v, s, t)
+    ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
+    n = ZERO
+    if a.side.own[leaf_ints(a.side, a.leaf) + S.DIM] == 2:
+        n = outward_normal(a.side, a.leaf, ja)
+    if b.side.own[leaf_ints(b.side, b.leaf) + S.DIM] == 2:
+        n = sub(n, outward_normal(b.side, b.leaf, jb))
+    length = norm(n)
+    far = ball_round(a)[1] + ball_round(b)[1] + norm(sub(jb[0], ja[0]))
+    away = scale(far / length, n) if length > 0.0 else ZERO
+    moved = moved_side(b.side, away)
+    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, q, counts)[0]
+
+
+@shared
+def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
+    """(whether Newton's method came to a common normal, parameters, n, d), from the parameters
+    `q` on. `span` makes the form dimensionless, length; it ends where it leaves `limits`, a least
+    and a greatest value of each parameter."""
+    ja, jb = jets_at(a, leaf_a, b, leaf_b, q)
+    n = first_normal(a, leaf_a, ja, b, leaf_b, jb, span)
+    d = dot(n, sub(jb[0], ja[0]))
+    if norm(n) < 0.5:
+        return False, q, n, d
+    r, y, scales = stack_reals(), stack_reals(), stack_reals()
+    contact_scales(ja, jb, span, scales)
+    error = scaled_residual(ja, jb, n, d, span, scales, r)
+    low, high = limits
+    for k in range(CONTACT_STEPS):
+        counts[1] += 1
+        solve_contact(ja, jb, n, d, span, scales, r, y)
+        trial = (
+            q[0] - y[0] * scales[0],
+            q[1] - y[1] * scales[1],
+            q[2] - y[2] * scales[2],
+            q[3] - y[3] * scales[3],
+        )
+        for i in range(4):
+            if not low[i] <= trial[i] <= high[i]:
+                return False, q, n, d
+        ka, kb = jets_at(a, leaf_a, b, leaf_b, trial)
+        new_n = unit(sub(n, (y[4], y[5], y[6])))
+        new_d = dot(new_n, sub(kb[0], ka[0]))
+        contact_scales(ka, kb, span, scales)
+        new_error = scaled_residual(ka, kb, new_n, new_d, span, scales, r)
+        if not new_error < (error if k >= FREE_STEPS else MAY_GROW * error):
+            break
+        q, n, d, error, ja, jb = trial, new_n, new_d, new_error, ka, kb
+    return error <= CONTACT_ERROR, q, n, d
+
+
+@kernel
+def is_signed_minimum(ja, jb, n, d, span):
+    """Does the signed distance grow in all directions to second order, or stay? Then the
+    contact-regular matrix has as many eigenvalues on either side of 0 as at two points apart; these
+    numbers do not change with d while it is regular."""
+    J, scales, values = stack_matrix(), stack_reals(), stack_reals()
+    contact_scales(ja, jb, span, scales)
+    scaled_jacobian(ja, jb, n, d, span, scales, J)
+    if not symmetric_eigen(J, values, 8):
+        return False
+    above, below = 0, 0
+    for k in range(8):
+        above += 1 if values[k] > FLAT_VALLEY else 0
+        below += 1 if values[k] < -FLAT_VALLEY else 0
+    return above <= ABOVE_ZERO and below <= BELOW_ZERO
+
+
+@kernel
+def limits_of(boxes, spare):
+    """The parameters of two boxes, and `spare` widths more on each side."""
+    low, high = reals_on_stack(4), reals_on_stack(4)
+    for i in range(2):
+        box = boxes[i]
+        u, v = spare * (box.u1 - box.u0), spare * (box.v1 - box.v0)
+        low[2 * i], high[2 * i] = box.u0 - u, box.u1 + u
+        low[2 * i + 1], high[2 * i + 1] = box.v0 - v, box.v1 + v
+    return (low[0], low[1], low[2], low[3]), (high[0], high[1], high[2], high[3])

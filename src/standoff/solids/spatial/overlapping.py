@@ -1,0 +1,92 @@
+"""The answer of two solids that overlap: the depth of each place, with what is proven of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from standoff.geometry.validation import Array
+from standoff.kernels.solids.spatial_progress import BOUND
+from standoff.solids.answer import Overlap, SolidProximity
+from standoff.solids.parting import least_way_out
+from standoff.solids.spatial.contact import (
+    SignedMinima,
+    ball_of,
+    bound_of,
+    place_of,
+    regions_of,
+)
+from standoff.solids.spatial.minimum import Found, Sought
+from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.patches import patch_told
+from standoff.solids.spatial.told import Told, answer_of
+from standoff.solids.spatial.tolerances import CONTACT_REACH
+from standoff.solids.tolerances import PARTED_BY
+from standoff.tracking.status import Status
+
+Answered = tuple[SolidProximity, list[Place]]
+"""An answer, and the places of its minima."""
+NO_ROWS = np.empty((0, 11))
+
+
+def contact_reach(pair: PlacedPair, sought: Sought) -> Sought:
+    """The same with how deep an overlap is looked for at least."""
+    return sought._replace(above=max(sought.above, CONTACT_REACH * pair.size + sought.patch))
+
+
+def told_overlapping(
+    pair: PlacedPair,
+    signed: SignedMinima,
+    sought: Sought,
+    minima: float | None,
+    ball: Overlap | None = None,
+    is_apart: Callable[[Array], bool] | None = None,
+) -> Answered | None:
+    """The answer where minima of the signed distance prove that the solids overlap; None where none
+    does.
+
+    Parameters
+    ----------
+    minima : float or None
+        Up to which distance minima are told that are no overlap; None: only the deepest place is.
+    ball : Overlap, optional
+        One that is known to be inside both.
+    is_apart : callable, optional
+        Are the solids proven to be apart where B is moved by a vector? The shortest one is asked
+        that opens all places, to first order.
+    """
+    regions = regions_of(pair, signed, sought.tolerance)
+    if not regions:
+        return None
+    overlap = ball or ball_of(pair, signed, regions[0].row)
+    overlap = overlap._replace(depth=max(overlap.depth, *(each.depth for each in regions)))
+    rows, places = [region.row for region in regions], [region.place for region in regions]
+    way = way_apart(places, PARTED_BY * sought.tolerance) if is_apart else None
+    if is_apart and way is not None and is_apart(way):
+        overlap = overlap._replace(parting=way)
+    if minima is None:
+        rows, places = rows[:1], places[:1]
+    else:
+        apart = [row for row in signed.sets if 0.0 <= row[0] <= minima]
+        rows, places = rows + apart, places + [place_of(pair, signed, row) for row in apart]
+    for row, place in zip(rows, places, strict=True):
+        if place.distance < 0.0:
+            place.row[BOUND] = bound_of(pair, signed, row, sought)
+    patches = [patch_told(pair, row) for row in rows] if sought.patch > 0.0 else []
+    told = Told(Status.OVERLAPPING, overlap=overlap, patches=patches)
+    return answer_of(pair, _found(places[0], signed, sought), places, told), places
+
+
+def _found(first: Place, signed: SignedMinima, sought: Sought) -> Found:
+    row, counts = first.row, (signed.evaluations, 0, 0, 0, 0)
+    return Found(
+        -np.inf, -np.inf, sought.tolerance, True, row[None], row, NO_ROWS, 0, counts, 0
+    )  # fmt: skip
+
+
+def way_apart(places: Sequence[Place], spare: float) -> Array | None:
+    """The shortest vector by which B is moved so that it is clear of all places by `spare`, to
+    first order; None where there is none."""
+    normals = np.array([place.normal for place in places])
+    return least_way_out(normals, np.array([spare - place.distance for place in places]))
