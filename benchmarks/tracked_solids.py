@@ -58,14 +58,21 @@ def revolved(steps: list[tuple[float, float]], top: float) -> Any:
 
 
 def sliding(
-    a: Solid, b: Solid, gap: float, speed: float, frames: int, rng: np.random.Generator
+    a: Solid,
+    b: Solid,
+    gap: float,
+    speed: float,
+    frames: int,
+    rng: np.random.Generator,
+    pressed: bool = False,
 ) -> np.ndarray:
-    """Poses of B (n, 4, 4)."""
+    """Poses of B (n, 4, 4); `pressed`: it goes on from the gap to as much of a depth."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = posed(a, b, gap, rng)
     tracker = SolidTracker(a, b)
     state = tracker.start(STILL, pose)
     size = 0.5 * (a.size + b.size)
+    gap = -gap if pressed else gap
     poses, spin, drift = [pose], rng.normal(size=3), rng.normal(size=3)
     for _ in range(frames):
         found = state.proximity

@@ -134,20 +134,22 @@ def scaled_jacobian(jet_a, jet_b, n, d, span, scales, J):
 
 @kernel
 def solve_contact(jet_a, jet_b, n, d, span, scales, r, x):
-    """J^-1 r in scaled columns into x. Least squares of least norm serve parallel features, where
-    J is singular and consistent; where its numbers are not finite, x is 0."""
+    """J^-1 r in scaled columns into x; whether J is regular. Least squares of least norm serve
+    parallel features, where J is singular and consistent; where its numbers are not finite, x is
+    0."""
     J = stack_matrix()
     scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
     for k in range(8):
         x[k] = r[k]
     if factor_and_solve(J, x, 8):
-        return
+        return True
     scaled_jacobian(jet_a, jet_b, n, d, span, scales, J)
     for k in range(8):
         x[k] = r[k]
     if not least_norm_solve(J, x, 8, PIVOT):
         for k in range(8):
             x[k] = 0.0
+    return False
 
 
 class Stationary(NamedTuple):

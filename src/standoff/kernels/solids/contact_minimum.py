@@ -39,6 +39,9 @@ from standoff.kernels.values import Pose
 ABOVE_ZERO, BELOW_ZERO = 5, 3
 # Of the first steps of Newton's method so many may make its error greater, and by how much.
 FREE_STEPS, MAY_GROW = 3, 10.0
+# Where the matrix is singular, each step makes the error as much less: parallel features have a
+# common normal, and others that are straight, as a ruling and a plane, have none.
+SHRINKS = 0.3
 
 
 @kernel
@@ -101,7 +104,7 @@ def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
     low, high = limits
     for k in range(CONTACT_STEPS):
         counts[1] += 1
-        solve_contact(ja, jb, n, d, span, scales, r, y)
+        regular = solve_contact(ja, jb, n, d, span, scales, r, y)
         trial = (
             q[0] - y[0] * scales[0],
             q[1] - y[1] * scales[1],
@@ -116,7 +119,8 @@ def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
         new_d = dot(new_n, sub(kb[0], ka[0]))
         contact_scales(ka, kb, span, scales)
         new_error = scaled_residual(ka, kb, new_n, new_d, span, scales, r)
-        if not new_error < (error if k >= FREE_STEPS else MAY_GROW * error):
+        most = (MAY_GROW if k < FREE_STEPS else 1.0) if regular else SHRINKS
+        if not new_error < most * error:
             break
         q, n, d, error, ja, jb = trial, new_n, new_d, new_error, ka, kb
     return error <= CONTACT_ERROR, q, n, d

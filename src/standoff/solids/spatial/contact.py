@@ -31,6 +31,8 @@ MOST_PUSHES = 2
 """Places that are tried for a ball."""
 ENOUGH = 0.5
 """Of what is the most that can be proven: no more is looked for."""
+BALL = 0.1
+"""Of half the depth: a larger ball is not looked for."""
 MOST_BALLS = 8
 """Balls by which two places are joined."""
 NEXT_BALL = 0.9
@@ -190,7 +192,7 @@ def ball_of(pair: PlacedPair, found: SignedMinima, row: Array) -> Overlap:
         least = min(depth for depth, _ in depths)
         if least > best.radius:
             best = Overlap(middle, least, sum(depth for depth, _ in depths))
-        if least >= ENOUGH * about:
+        if least >= BALL * about:
             break
         for depth, away in depths:
             middle = middle + max(about - depth, 0.0) * away

@@ -11,7 +11,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
-from standoff.solids.answer import MOST_OPEN, Continuum, Overlap, PointPair, SolidProximity
+from standoff.solids.answer import MOST_OPEN, Continuum, PointPair, SolidProximity
 from standoff.solids.asked import DEFAULT, Asked
 from standoff.solids.parting import parted
 from standoff.solids.spatial.contact import signed_minima_of
@@ -198,6 +198,9 @@ def _meeting(
     pair: PlacedPair, found: Found, sought: Sought, senses: tuple[int, int]
 ) -> SolidProximity:
     """The boundaries meet: the solids overlap, or touch."""
+    told = _overlapping(pair, found, sought)
+    if told:
+        return told
     place = pair.place(found.best, senses)
     middle = 0.5 * (place.point_a + place.point_b)
     starts = [middle]
@@ -208,24 +211,17 @@ def _meeting(
             if other.may_hold(spot):
                 starts.append(world)
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance)
-    told = _overlapping(pair, found, overlap, sought)
-    if told:
-        return told
     if overlap:
         return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
 
 
-def _overlapping(
-    pair: PlacedPair, found: Found, ball: Overlap | None, sought: Sought
-) -> SolidProximity | None:
-    """The answer by the minima of the signed distance, where these prove that the solids overlap.
-    `ball`: one that is inside both, where it is known."""
+def _overlapping(pair: PlacedPair, found: Found, sought: Sought) -> SolidProximity | None:
+    """The answer by the minima of the signed distance, where these prove that the solids
+    overlap."""
     reach, minima = contact_reach(pair, sought), sought.above - sought.patch
     signed = signed_minima_of(pair, reach)
-    told = told_overlapping(
-        pair, signed, reach, minima or None, ball, lambda by: _is_apart(pair.moved(by))
-    )
+    told = told_overlapping(pair, signed, reach, minima or None, _is_apart)
     if told is None:
         return None
     answer = told[0]
@@ -278,9 +274,9 @@ def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
     return replace(found, upper=float(touch[0][0]), minima=minima, best=touch[0])
 
 
-def _is_apart(pair: PlacedPair) -> bool:
-    """Is it proven that two solids have no common point?"""
+def _is_apart(pair: PlacedPair, tolerance: float | None = None) -> bool:
+    """Is it proven that two solids have no common point? `tolerance`: to what their distance is."""
     if is_inside(pair, "A") or is_inside(pair, "B"):
         return False
-    found = pair.least(OUTSIDE, Sought(PROOF_TOLERANCE * pair.size))
+    found = pair.least(OUTSIDE, Sought(tolerance or PROOF_TOLERANCE * pair.size))
     return not found.met and found.lower > 0.0

@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.geometry.validation import Array
 from standoff.kernels.solids.spatial_progress import BOUND
-from standoff.solids.answer import Overlap, SolidProximity
+from standoff.solids.answer import SolidProximity
 from standoff.solids.parting import least_way_out
 from standoff.solids.spatial.contact import (
     SignedMinima,
@@ -28,6 +28,8 @@ from standoff.tracking.status import Status
 Answered = tuple[SolidProximity, list[Place]]
 """An answer, and the places of its minima."""
 NO_ROWS = np.empty((0, 11))
+PARTED_SPARE = 1e-3
+"""Of the depth: how much farther B is moved to see whether the solids are apart."""
 
 
 def contact_reach(pair: PlacedPair, sought: Sought) -> Sought:
@@ -40,8 +42,7 @@ def told_overlapping(
     signed: SignedMinima,
     sought: Sought,
     minima: float | None,
-    ball: Overlap | None = None,
-    is_apart: Callable[[Array], bool] | None = None,
+    is_apart: Callable[[PlacedPair, float], bool] | None = None,
 ) -> Answered | None:
     """The answer where minima of the signed distance prove that the solids overlap; None where none
     does.
@@ -50,21 +51,23 @@ def told_overlapping(
     ----------
     minima : float or None
         Up to which distance minima are told that are no overlap; None: only the deepest place is.
-    ball : Overlap, optional
-        One that is known to be inside both.
     is_apart : callable, optional
-        Are the solids proven to be apart where B is moved by a vector? The shortest one is asked
-        that opens all places, to first order.
+        Are two solids at poses proven to be apart, their distance to a tolerance? It is asked with
+        B moved by the shortest vector that opens all places, to first order; and depths are proven
+        as far as they can be.
     """
     regions = regions_of(pair, signed, sought.tolerance)
     if not regions:
         return None
-    overlap = ball or ball_of(pair, signed, regions[0].row)
-    overlap = overlap._replace(depth=max(overlap.depth, *(each.depth for each in regions)))
     rows, places = [region.row for region in regions], [region.place for region in regions]
-    way = way_apart(places, PARTED_BY * sought.tolerance) if is_apart else None
-    if is_apart and way is not None and is_apart(way):
-        overlap = overlap._replace(parting=way)
+    overlap = ball_of(pair, signed, rows[0])
+    overlap = overlap._replace(depth=max(overlap.depth, *(each.depth for each in regions)))
+    if is_apart:
+        spare = max(PARTED_BY * sought.tolerance, PARTED_SPARE * -places[0].distance)
+        way = way_apart(places, spare)
+        if way is not None and is_apart(pair.moved(way), 0.5 * spare):
+            overlap = overlap._replace(parting=way)
+        overlap = overlap._replace(depth=max(overlap.depth, *(_deep(pair, p) for p in places)))
     if minima is None:
         rows, places = rows[:1], places[:1]
     else:
@@ -76,6 +79,11 @@ def told_overlapping(
     patches = [patch_told(pair, row) for row in rows] if sought.patch > 0.0 else []
     told = Told(Status.OVERLAPPING, overlap=overlap, patches=patches)
     return answer_of(pair, _found(places[0], signed, sought), places, told), places
+
+
+def _deep(pair: PlacedPair, place: Place) -> float:
+    """How deep a place's point of one boundary is in the other solid, proven as far as can be."""
+    return max(pair.depths(place.point_b)[0], pair.depths(place.point_a)[1])
 
 
 def _found(first: Place, signed: SignedMinima, sought: Sought) -> Found:

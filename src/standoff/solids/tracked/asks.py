@@ -28,6 +28,7 @@ from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.solids.tracked.front import (
     NO_MINIMA,
+    Branches,
     Frames,
     Front,
     Minima,
@@ -104,15 +105,15 @@ class Asks(NamedTuple):
         have come to the place of another one; None where that is not proven."""
         sought = self.sought(pair)
         reach = contact_reach(pair, sought)
-        frames = self.frames(front or front_in_contact(pair, sought, born))
-        signed = signed_minima_of(pair, reach, frames.work[:5])
+        branches = Branches(front or front_in_contact(pair, sought, born))
+        signed = signed_minima_of(pair, reach, branches.arrays)
         told = told_overlapping(pair, signed, reach, self.options.minima)
         if told is None:
             return None
         answer, places = told
         if self.options.minima is not None:
-            answer = numbered(answer, frames.number(*rows_of(pair, places), motion))
-        return answer, frames.kept_in_contact(pair.relative, places[0].row), frames.merged()
+            answer = numbered(answer, branches.number(*rows_of(pair, places), motion))
+        return answer, branches.kept(pair.relative, places[0].row), branches.merged()
 
     def apart(
         self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float

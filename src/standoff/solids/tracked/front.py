@@ -238,25 +238,13 @@ class Frames:
     def merged(self) -> NDArray[np.int64]:
         """Of the last call's frames (frame, key, key of the one whose place it has come to), rows
         (n, 3)."""
-        n = MERGED_REALS * int(self.work.store[N_MERGED])
-        return self.work.merged[:n].reshape(-1, MERGED_REALS).astype(np.int64)
+        return merged_of(self.work.store, self.work.merged)
 
     def number(self, rows: Array, sets: Array, motion: float) -> NDArray[np.int64]:
         """The branches of local minima that were told otherwise, after a motion, length: their
         numbers."""
-        n = min(len(sets), MOST_BRANCHES)
         reach = SAME_BASIN * self.best[C.SIZE] + FRAMES_AHEAD * motion
-        frame = self.done - 1
-        number_minima(self.work[:5], rows.ravel(), sets.ravel(), n, float(reach), frame)
-        numbers = np.full(len(sets), -1, dtype=np.int64)
-        numbers[:n] = sets[:n, SET_BRANCH]
-        return numbers
-
-    def kept_in_contact(self, at: Array, row: Array) -> Front:
-        """The front after a frame in which the solids overlap, with B at a pose (12,) in A's frame,
-        and points of both boundaries as a row of minima has them."""
-        self.best[C.LEAF_A : C.AT + 4] = row[1:7]
-        return self.kept()._replace(met=at)
+        return numbers_of(self.work[:5], rows, sets, float(reach), self.done - 1)
 
     def found(self) -> Found:
         """What the last frame found, as a search does."""
@@ -267,6 +255,57 @@ def moved_by(before: Array, now: Array, size: float) -> float:
     """A bound of how far a point of B, of a size, has moved between two poses (12,), length."""
     turn = float(np.linalg.norm(now[:9] - before[:9]))
     return float(np.linalg.norm(now[9:] - before[9:])) + turn * size
+
+
+def merged_of(store: Array, merged: Array) -> NDArray[np.int64]:
+    """(frame, key, key of the one whose place it has come to) of branches, rows (n, 3)."""
+    n = MERGED_REALS * int(store[N_MERGED])
+    return merged[:n].reshape(-1, MERGED_REALS).astype(np.int64)
+
+
+def numbers_of(
+    arrays: Any, rows: Array, sets: Array, reach: float, frame: int
+) -> NDArray[np.int64]:
+    """The numbers of the branches of local minima, which are then those of the next frame."""
+    n = min(len(sets), MOST_BRANCHES)
+    number_minima(arrays, rows.ravel(), sets.ravel(), n, reach, frame)
+    numbers = np.full(len(sets), -1, dtype=np.int64)
+    numbers[:n] = sets[:n, SET_BRANCH]
+    return numbers
+
+
+class Branches:
+    """The branches of a front alone, in a frame in which the solids overlap: its rows stay as they
+    are."""
+
+    def __init__(self, front: Front) -> None:
+        self.front = front
+        work = _room(threading.get_ident())
+        store = front.store.copy()
+        store[N_MERGED] = 0.0
+        work.branches[: len(front.branches)] = front.branches
+        self.arrays = store, work.keys, work.rows, work.branches, work.merged
+
+    def number(self, rows: Array, sets: Array, motion: float) -> NDArray[np.int64]:
+        """As that of `Frames`."""
+        reach = SAME_BASIN * self.front.best[C.SIZE] + FRAMES_AHEAD * motion
+        return numbers_of(self.arrays, rows, sets, float(reach), 0)
+
+    def merged(self) -> NDArray[np.int64]:
+        """As that of `Frames`."""
+        return merged_of(self.arrays[0], self.arrays[-1])
+
+    def kept(self, at: Array, row: Array) -> Front:
+        """The front after the frame, with B at a pose (12,) in A's frame, and points of both
+        boundaries as a row of minima has them."""
+        store, branches, best = self.arrays[0], self.arrays[3], self.front.best.copy()
+        best[C.LEAF_A : C.AT + 4] = row[1:7]
+        count = BRANCH_REALS * int(store[N_BRANCHES])
+        changed = best, store, branches[:count].copy(), at.copy()
+        for array in changed:
+            array.flags.writeable = False
+        names = "best", "store", "branches", "met"
+        return self.front._replace(**dict(zip(names, changed, strict=True)))
 
 
 def room_for(n: int) -> Array:
