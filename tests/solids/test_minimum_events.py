@@ -11,6 +11,7 @@ import standoff as so
 from families.solid_shapes import bracket, prism, ring, tube
 from standoff.solids import MinimumEvent, SolidAnswers
 from standoff.tracking.branches import Birth, End
+from standoff.tracking.status import Status
 
 Array = np.ndarray
 STILL = np.eye(4)
@@ -67,7 +68,7 @@ def test_the_table_is_that_of_the_answers() -> None:
     down = [placed(np.eye(3), [0.5, y, 0.5]) for y in (1.4, 1.32, 1.25, 1.32, 1.4)]
     answers = run(tracker, np.concatenate([ACROSS[:120], down]))
     told = answers.minima
-    assert answers.restarts.any()
+    assert Status.OVERLAPPING in answers.status
     rows = [(k, m) for k, answer in enumerate(answers) for m in answer.minima]
     assert told.frame.tolist() == [k for k, _ in rows]
     assert told.key.tolist() == [m.key for _, m in rows]
@@ -77,11 +78,24 @@ def test_the_table_is_that_of_the_answers() -> None:
     assert told.point_b == pytest.approx(np.array([m.point_b for _, m in rows]), abs=1e-14)
     assert list(told.feature_a) == [m.feature_a for _, m in rows]
     assert list(told.feature_b) == [m.feature_b for _, m in rows]
-    # none is told while they meet; what comes up then is another branch
-    assert told.key[told.frame == 122].tolist() == [-1]
-    last, first = (set(told.key[told.frame == k]) for k in (121, 123))
-    assert not first & set(told.key[told.frame < 123])
-    events = [each for each in answers.events if each.frame in (122, 123)]
+    # it is followed through contact
+    nearest = [told.key[told.frame == k][0] for k in (121, 122, 123)]
+    assert len(set(nearest)) == 1
+    assert told.distance[told.frame == 122][0] < 0.0
+
+
+def test_no_minimum_is_followed_through_an_overlap_that_is_too_deep_for_places() -> None:
+    tracker = so.Tracker(FEET, BALL, minima=0.25)
+    down = [placed(np.eye(3), [0.5, y, 0.5]) for y in (1.4, 1.35, 0.7, 1.35, 1.4)]
+    answers = run(tracker, np.array(down))
+    told = answers.minima
+    assert answers.status[2] is Status.OVERLAPPING
+    assert answers.restarts.tolist() == [False, False, True, True, False]
+    assert told.key[told.frame == 2].tolist() == [-1]
+    last, first = (set(told.key[told.frame == k]) for k in (1, 3))
+    assert first
+    assert not first & set(told.key[told.frame < 3])
+    events = [each for each in answers.events if each.frame in (2, 3)]
     ended = {each.key: each.reason for each in events if each.kind == "end"}
     assert ended == dict.fromkeys(last, End.MET)
     born = {each.key: each.reason for each in events if each.kind == "birth"}

@@ -71,8 +71,8 @@ def test_a_lying_peg_has_two_ends_and_a_standing_one_a_rim() -> None:
     pin = peg(0.3, -1.0, 1.0)
     lying = asked(SLAB, pin, placed(turned("y", np.pi / 2), [0.1, 0.2, 0.9])).minima[0]
     ends = corners(lying.patch)
-    assert ends[[0, -1]] == pytest.approx(np.array([[-0.9, 0.2, 0.5], [1.1, 0.2, 0.5]]), abs=1e-9)
-    assert ends[:, 1] == pytest.approx(np.full(len(ends), 0.2), abs=1e-9)
+    assert ends[[0, -1]] == pytest.approx(np.array([[-0.9, 0.2, 0.5], [1.1, 0.2, 0.5]]), abs=1e-7)
+    assert ends[:, 1] == pytest.approx(np.full(len(ends), 0.2), abs=1e-7)
     standing = asked(SLAB, pin, placed(np.eye(3), [0.1, 0.2, 1.6])).minima[0]
     points = corners(standing.patch) - np.array([0.1, 0.2, 0.5])
     assert len(points) in (3, 4)

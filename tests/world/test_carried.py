@@ -52,8 +52,8 @@ def test_no_pair_is_missed_while_bodies_come_and_go(
         assert state.counts.started < fresh.counts.started
         motion = Motion(rng, len(world.moving))
         motion.poses = poses
-    assert near > 20
-    assert reused > 20
+    assert near > draws(20)
+    assert reused > draws(20)
 
 
 def same_answers(one: so.World, first: so.world.WorldState, second: so.world.WorldState) -> None:

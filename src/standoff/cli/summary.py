@@ -98,6 +98,8 @@ def _solid_lines(scene: Scene, answer: SolidProximity) -> list[str]:
     if answer.overlap is not None:
         unit = scene.length_unit
         lines.append(line("overlap", f"a ball of radius {answer.overlap.radius:.6g} {unit}"))
+        least = f"no translation shorter than {answer.overlap.depth:.6g} {unit} parts them"
+        lines.append(line("depth", least))
     return lines
 
 

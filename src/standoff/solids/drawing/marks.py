@@ -55,10 +55,11 @@ def draw_marks(axes: Axes, answer: SolidProximity, flat: Flat, wide: float) -> N
         look: dict[str, Any] = {"facecolor": "none", "edgecolor": BALL_COLOUR, "linewidth": 1.6}
         axes.add_patch(Circle(tuple(centre), answer.overlap.radius, zorder=BALL_ORDER, **look))
         axes.plot(*centre, "+", color=BALL_COLOUR, zorder=BALL_ORDER)
+    places = has_places(answer)
     for pair in answer.minima[1:]:
         ends = flat(np.array([pair.point_a, pair.point_b]))
         axes.plot(*ends.T, zorder=WITNESS_ORDER - 0.5, **TIE_LOOK)  # type: ignore[arg-type]
-    if np.isfinite(answer.point_a).all() and answer.overlap is None:
+    if np.isfinite(answer.point_a).all() and (answer.overlap is None or places):
         ends = flat(np.array([answer.point_a, answer.point_b]))
         axes.plot(*ends.T, zorder=WITNESS_ORDER, **WITNESS_LOOK)  # type: ignore[arg-type]
     if answer.continuum is not None and answer.continuum.ends:
@@ -67,6 +68,11 @@ def draw_marks(axes: Axes, answer: SolidProximity, flat: Flat, wide: float) -> N
             for side in (0, 1):
                 axes.plot(*flat(ends[:, side]).T, color=END_COLOUR, lw=1.4, zorder=END_ORDER - 0.5)
         axes.plot(*flat(ends.reshape(-1, 3)).T, linestyle="", zorder=END_ORDER, **END_LOOK)  # type: ignore[arg-type]
+
+
+def has_places(answer: SolidProximity) -> bool:
+    """Is an overlap told place by place?"""
+    return answer.overlap is not None and bool(answer.minima) and answer.minima[0].distance < 0.0
 
 
 def _draw_piece(axes: Axes, corners: Array, colour: str, wide: float) -> None:
@@ -88,9 +94,9 @@ def marks_legend(answer: SolidProximity, size: float, unit: str) -> list[Artist]
     others = len(answer.minima) - 1
     if others > 0:
         farther = answer.minima[-1].distance > answer.distance + FARTHER * size
-        one, many = (
-            ("local minimum", "local minima") if farther else ("nearest pair", "nearest pairs")
-        )
+        one, many = "nearest pair", "nearest pairs"
+        if farther:
+            one, many = "local minimum", "local minima"
         label = f"1 more {one}" if others == 1 else f"{others} more {many}"
         handles.append(Line2D([], [], label=label, **TIE_LOOK))  # type: ignore[arg-type]
     if answer.continuum is not None:
@@ -115,9 +121,14 @@ def _told(answer: SolidProximity, size: float, unit: str) -> Artist:
         return Line2D([], [], linestyle="", label=f"no distance, {status}")
     (distance,) = without_roundoff([answer.distance], size)
     name = "depth at least" if distance < 0.0 else "wall" if answer.inside else "distance"
+    places = has_places(answer)
+    if places:
+        name = "depth of the deepest place"
     told = f"{name} {abs(distance):.6g} {unit}".rstrip()
     if answer.status in (Status.WITHIN, Status.DEADLINE):
         low = max(answer.lower_bound, 0.0) if np.isfinite(answer.lower_bound) else None
         told += ", no lower bound" if low is None else f", at least {low:.6g}"
-    look: dict[str, Any] = {"linestyle": ""} if answer.overlap is not None else WITNESS_LOOK
+    look: dict[str, Any] = WITNESS_LOOK
+    if answer.overlap is not None and not places:
+        look = {"linestyle": ""}
     return Line2D([], [], label=f"{told}, {status}", **look)

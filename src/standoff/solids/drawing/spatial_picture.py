@@ -14,7 +14,7 @@ from standoff.bodies.features import Feature
 from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.camera import Camera, camera_on, visible
-from standoff.solids.drawing.marks import draw_marks, marks_legend
+from standoff.solids.drawing.marks import draw_marks, has_places, marks_legend
 from standoff.solids.drawing.skin import (
     Skin,
     draw_edges,
@@ -183,7 +183,7 @@ def _marked(answer: SolidProximity) -> Array:
     if answer.continuum is not None:
         found += [point for ends in answer.continuum.ends for point in ends]
     if answer.overlap is not None:
-        found = [answer.overlap.common_point]
+        found = [*(found if has_places(answer) else ()), answer.overlap.common_point]
     return np.array(found).reshape(-1, 3)
 
 

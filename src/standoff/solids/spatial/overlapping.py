@@ -21,15 +21,13 @@ from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.spatial.tolerances import CONTACT_REACH
+from standoff.solids.spatial.tolerances import CONTACT_REACH, PARTED_SPARE
 from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
 
 Answered = tuple[SolidProximity, list[Place]]
 """An answer, and the places of its minima."""
 NO_ROWS = np.empty((0, 11))
-PARTED_SPARE = 1e-3
-"""Of the depth: how much farther B is moved to see whether the solids are apart."""
 
 
 def contact_reach(pair: PlacedPair, sought: Sought) -> Sought:

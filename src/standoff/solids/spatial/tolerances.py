@@ -40,6 +40,9 @@ LAST_CLIMB: Final = 1e-5
 CONTACT_REACH: Final = 0.02
 """Of the sizes of both solids: how deep an overlap is looked for place by place where no more is
 asked."""
+PARTED_SPARE: Final = 1e-3
+"""Relative, of the depth: how much farther than it B is moved to see whether the solids are apart;
+a distance is proven the faster the greater it is."""
 LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 """Of the size: steps from a common point of both boundaries among which one inside both is
 sought."""

@@ -13,7 +13,6 @@ from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
 from standoff.solids.spatial.contact import signed_minima_of
 from standoff.solids.spatial.distance import (
-    Inside,
     reach_of_minima,
     senses_of,
     spatial_distance,
@@ -25,6 +24,7 @@ from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import rows_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
+from standoff.solids.spatial.told import Inside
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.solids.tracked.front import (
     NO_MINIMA,

@@ -301,11 +301,10 @@ class Branches:
         store, branches, best = self.arrays[0], self.arrays[3], self.front.best.copy()
         best[C.LEAF_A : C.AT + 4] = row[1:7]
         count = BRANCH_REALS * int(store[N_BRANCHES])
-        changed = best, store, branches[:count].copy(), at.copy()
-        for array in changed:
+        kept, met = branches[:count].copy(), at.copy()
+        for array in (best, store, kept, met):
             array.flags.writeable = False
-        names = "best", "store", "branches", "met"
-        return self.front._replace(**dict(zip(names, changed, strict=True)))
+        return self.front._replace(best=best, store=store, branches=kept, met=met)
 
 
 def room_for(n: int) -> Array:

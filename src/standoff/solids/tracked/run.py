@@ -14,10 +14,11 @@ from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import POINTS
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
-from standoff.solids.spatial.distance import Told, answer_of, inside_of, senses_of
+from standoff.solids.spatial.distance import inside_of, senses_of
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import patch_told
+from standoff.solids.spatial.told import Told, answer_of
 from standoff.solids.tracked.answers import SolidAnswers, world_places
 from standoff.solids.tracked.asks import Asks, numbered
 from standoff.solids.tracked.events import Course, LocalMinima, MinimumEvent, events_of, minima_of
