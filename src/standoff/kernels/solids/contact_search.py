@@ -23,7 +23,7 @@ from standoff.kernels.solids.front_branches import (
     B_LEAVES,
     B_POINTS,
     BRANCH_REALS,
-    holds_across,
+    leaf_beside,
 )
 from standoff.kernels.solids.front_motion import put_three
 from standoff.kernels.solids.front_rows import N_BRANCHES
@@ -104,12 +104,8 @@ def leaf_holding(side, leaf, u, v):
     wide_u, wide_v = ENDS_BEYOND * (box.u1 - box.u0), ENDS_BEYOND * (box.v1 - box.v0)
     if box.u0 - wide_u <= u <= box.u1 + wide_u and box.v0 - wide_v <= v <= box.v1 + wide_v:
         return leaf, u
-    for turn in range(3):  # what goes round is met again a turn away
-        shift = 2.0 * pi * (turn if turn < 2 else -1)
-        for k in range(side.own[S.N_LEAVES]):
-            if k != leaf and holds_across(side, k, leaf, u + shift, v):
-                return k, u + shift
-    return -1, u
+    k, shift = leaf_beside(side, leaf, u, v)
+    return k, u + shift
 
 
 @kernel

@@ -93,12 +93,20 @@ def leaf_beyond(side, leaf, u, v, i, end):
     box = leaf_box(side, leaf)
     x = u + (end * PAST_SIDE * (box.u1 - box.u0) if i == 0 else 0.0)
     y = v + (end * PAST_SIDE * (box.v1 - box.v0) if i == 1 else 0.0)
-    for turn in range(3):  # what goes round is met again a turn away
+    k, shift = leaf_beside(side, leaf, x, y)
+    return k, u + shift
+
+
+@kernel
+def leaf_beside(side, leaf, u, v):
+    """(another leaf of the same face or edge that has the parameters, by how much u is more there):
+    what goes round is met again a turn away; -1: none."""
+    for turn in range(3):
         shift = 2.0 * pi * (turn if turn < 2 else -1)
         for k in range(side.own[S.N_LEAVES]):
-            if k != leaf and holds_across(side, k, leaf, x + shift, y):
-                return k, u + shift
-    return -1, u
+            if k != leaf and holds_across(side, k, leaf, u + shift, v):
+                return k, shift
+    return -1, 0.0
 
 
 @kernel
