@@ -59,7 +59,7 @@ def is_side(side, face, edge):
 
 
 @kernel
-def touch(side, leaf, other):
+def are_adjacent(side, leaf, other):
     """Are two leaves of one feature, or of two of which one is at the border of the other?"""
     r, s = leaf_ints(side, leaf), leaf_ints(side, other)
     if side.own[r + S.FEATURE] == side.own[s + S.FEATURE]:
@@ -83,9 +83,9 @@ def is_one_minimum(a, b, best, minima, o, p):
     q, r = points_of(minima, p)
     if max(norm(sub(x, q)), norm(sub(y, r))) <= ONE_PLACE * best[SIZE]:
         return True
-    if not touch(a, int(minima[o + 1]), int(minima[p + 1])):
+    if not are_adjacent(a, int(minima[o + 1]), int(minima[p + 1])):
         return False
-    return touch(b, int(minima[o + 2]), int(minima[p + 2]))
+    return are_adjacent(b, int(minima[o + 2]), int(minima[p + 2]))
 
 
 @kernel
