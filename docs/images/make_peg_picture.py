@@ -2,7 +2,7 @@
 ``python docs/images/make_peg_picture.py``.
 
 The peg is pressed against the wall of its hole, and rolls along it while it goes in. Its force is
-that of a foundation: proportional to the depth of each place, and to how far the peg is in.
+that of a foundation: proportional to the depth, and to how far the peg is in.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ HERE = Path(__file__).parent
 HOLE, OUTER, PEG = 0.5, 0.8, 0.49
 LOW, HIGH, LENGTH = -0.5, 0.5, 1.4
 DEPTH = 1e-3
-FRAMES = 300
+FRAMES = 120
 STIFFNESS = 1.0 / DEPTH
-FACETS = (16, 64, 256)
+FACETS = (16, 32, 64)
 X, Y, Z = np.eye(3)
 
 
@@ -81,7 +81,7 @@ def pieces(n: int) -> list[so.Body]:
 
 def poses() -> tuple[list[so.Pose], np.ndarray]:
     """Of the peg, and how far it is in."""
-    depth_in = np.linspace(0.05, 0.95, FRAMES)
+    depth_in = np.linspace(0.12, 0.95, FRAMES)
     offset = HOLE - PEG + DEPTH
     found = []
     for k, length in enumerate(depth_in):
@@ -94,13 +94,11 @@ def poses() -> tuple[list[so.Pose], np.ndarray]:
 
 
 def depths(bush: Solid, peg: Solid, path: list[so.Pose]) -> np.ndarray:
-    """The sum of the depths of all places, of each frame."""
+    """How deep the deepest place is in each frame."""
     tracker = so.Tracker(bush, peg, minima=5.0 * DEPTH)
     state = tracker.start(so.Pose.identity(), path[0])
     _, answers = tracker.run(state, so.Pose.identity(), path)
-    return np.array(
-        [sum(max(-m.distance, 0.0) for m in answer.minima) for answer in answers], dtype=float
-    )
+    return np.maximum(-answers.distance, 0.0)
 
 
 def main() -> None:
@@ -114,7 +112,10 @@ def main() -> None:
     cylinder, parts = so.shapes.cylinder(PEG, LENGTH), pieces(64)
     lines["64 convex pieces"] = np.array(
         [
-            sum(max(-so.distance(part, cylinder, None, pose).distance, 0.0) for part in parts)
+            max(
+                max(-so.distance(part, cylinder, so.Pose.identity(), pose).distance, 0.0)
+                for part in parts
+            )
             for pose in path
         ]
     )

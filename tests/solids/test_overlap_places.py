@@ -220,6 +220,8 @@ def test_a_start_in_an_overlap_and_without_minima() -> None:
     _, answers = tracker.run(state, STILL, poses)
     assert answers.status[0] is Status.OVERLAPPING
     assert answers.status[-1] is Status.CONVERGED
+    assert answers[0].minima[0].distance < 0.0
+    assert not answers.restarts.any()
     for k in range(0, len(poses), 6):
         cold = so.distance(FEET, LID, STILL, poses[k])
         assert answers[k].status is cold.status

@@ -166,10 +166,11 @@ def judged(
     if told.status is not Status.OVERLAPPING and is_inside(a, b, pose, told, rng):
         faults.append(f"{told.status.name}, and a point of one is inside the other")
     known = np.array([each.distance for each in told.minima])
-    sought = np.array([each.distance for each in cold.minima if each.distance < below - spare])
+    met = cold.status is Status.OVERLAPPING
+    placed = not met or cold.minima[0].distance < 0.0  # else the query knows a ball alone
+    sought = np.array([m.distance for m in cold.minima if placed and m.distance < below - spare])
     lost = [d for d in sought if not (np.abs(known - d) <= spare).any()]
     besides = [d for d in known if d < below - spare and not (np.abs(sought - d) <= spare).any()]
-    met = cold.status is Status.OVERLAPPING
     parted = met and cold.overlap is not None and cold.overlap.parting is not None
     return (
         Verdict(
