@@ -87,7 +87,7 @@ class Overlap(NamedTuple):
     Attributes
     ----------
     common_point : (3,) array
-        Inside both, world axes.
+        Inside both if the radius is above 0, world axes.
     radius : float
         The ball of this radius round it is inside both; 0 where none was found.
     depth : float
