@@ -27,6 +27,7 @@ from standoff.simulation.pair_laws import BESIDE
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system import EARTH, System
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.world import Compound
 
 FREE_KEYS = ("density", "mass", "inertia", "centre", "linear", "angular", "frame")
@@ -202,14 +203,8 @@ def _rigid_bodies(content: FileContent) -> list[RigidBody]:
     for name, body in content.bodies.items():
         if isinstance(body, Compound):
             raise content.top.error(
-                "has several pieces, and the simulator moves single convex bodies; write each "
-                "piece as a body, or use the scene with `standoff clearance`",
-                f"bodies.{name}",
-            )
-        if not isinstance(body, Body):
-            raise content.top.error(
-                "is a solid that need not be convex, and the simulator moves convex bodies alone; "
-                "use the scene with `standoff clearance`",
+                "has several pieces, and the simulator moves single bodies; write each piece as a "
+                "body, or use the scene with `standoff clearance`",
                 f"bodies.{name}",
             )
         placement = content.placements.get(name)
@@ -227,7 +222,7 @@ def _rigid_bodies(content: FileContent) -> list[RigidBody]:
     return found
 
 
-def _free(table: Table, body: Body, pose: Pose) -> RigidBody:
+def _free(table: Table, body: Body | SolidModel, pose: Pose) -> RigidBody:
     table.expect(*FREE_KEYS)
     if table.only_one(("density", "mass")) is None:
         table.required("density", "density = 1000.0 (or mass = 1.0)")

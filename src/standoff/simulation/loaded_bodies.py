@@ -89,9 +89,9 @@ class LoadedBodies:
         """Active features of the pairs, as last loaded."""
         at = K.STATE_HEADER + K.N_BODY * len(self.system.bodies)
         found = []
-        for number, pair in enumerate(self.system.pairs):
+        for number in range(len(self.system.pairs)):
             row = self.data[at + K.N_PAIR * number + T.N_STATE :]
             mode = AnswerRows(row[: T.N_OUT]).mode
-            a, b = (self.system.bodies[k].body for k in pair)
+            a, b = self.system.convex_pair(number)
             found.append((str(feature_of(a, int(mode[0]))), str(feature_of(b, int(mode[2])))))
         return found

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.bodies.boundary import Boundary
 from standoff.bodies.moments.boundary import Moments, moments_of
 from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shown
@@ -15,6 +16,7 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array, matrix3, vector3
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.tolerances import INERTIA_ROUNDOFF, LEAST_MOMENT, MOMENTS_END
+from standoff.solids.spatial.solid_model import SolidModel
 
 # A volume below so many times its own bound is none: no digit of the centre is left.
 LEAST_VOLUME = 4.0
@@ -152,16 +154,16 @@ def checked_inertia(value: Any) -> Array:
 
 
 def mass_properties(
-    body: Body, density: float = 1.0, *, tolerance: float = MOMENTS_END
+    body: Body | SolidModel, density: float = 1.0, *, tolerance: float = MOMENTS_END
 ) -> MassProperties:
-    """Mass, centre of mass and inertia of a solid body of constant density.
+    """Mass, centre of mass and inertia of a body, or a solid, of constant density.
 
     Integrals over the body's exact boundary by the divergence theorem, its swept radius included,
     with bounds of their errors: no mesh.
 
     Parameters
     ----------
-    body : Body
+    body : Body or Solid
         Bounded, spatial, with volume.
     density : float
         Mass over length cubed, positive.
@@ -180,14 +182,16 @@ def mass_properties(
     StandoffError
         A body without volume or without bounds; a density or tolerance that is not positive.
     """
-    if not isinstance(body, Body):
-        raise StandoffTypeError(f"body is {shown(body)}: give a Body.", "body", body)
+    if not isinstance(body, Body | SolidModel):
+        raise StandoffTypeError(f"body is {shown(body)}: give a Body or a Solid.", "body", body)
     rho = magnitude(density, "density")
-    _check_solid(body)
+    boundary: Boundary = body if isinstance(body, Body) else body.boundary
+    if isinstance(body, Body):
+        _check_solid(body)
     end = magnitude(tolerance, "tolerance")
-    found = moments_of(body, end)
+    found = moments_of(boundary, end)
     if end > MOMENTS_END and not _has_volume(found):
-        found = moments_of(body, MOMENTS_END)
+        found = moments_of(boundary, MOMENTS_END)
     if not _has_volume(found):
         raise StandoffError(
             f"{body!r} has no volume: {found.volume:.3g}, known to {found.volume_error:.3g}. Round "

@@ -36,8 +36,10 @@ def near_rows(system: System, laws: tuple[Law, ...]) -> NearRows | None:
     """The rows of a system whose ticks may leave pairs out; None where they visit all.
 
     That takes a horizon of every pair of bounded bodies. Pairs with a half-space are always
-    visited.
+    visited, and so are all pairs of a system with a solid.
     """
+    if any(system.of_solids):
+        return None
     bounded = [body.body.bounded for body in system.bodies]
     horizons = [
         _horizon(law)

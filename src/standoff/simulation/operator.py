@@ -15,7 +15,6 @@ from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.kernels.entries import simulation as entries
 from standoff.kernels.entries.preparing import prepare_simulation
-from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as T
 from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
@@ -40,6 +39,7 @@ from standoff.simulation.pair_laws import (
     laws_beside,
     packed_laws,
 )
+from standoff.simulation.state_room import kept_numbers
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_start import started
@@ -123,6 +123,13 @@ class Operator(KeepsReadOnly):
         choice(method, "method", METHODS)
         choice(tracker, "tracker", SIDES)
         self.method, self.tracker = method, tracker
+        if tracker == "inside" and any(system.of_solids):
+            raise StandoffError(
+                'tracker="inside" is for convex bodies: the places at which solids touch are born '
+                'and end, and are no parameters of a state; take tracker="beside".',
+                "tracker",
+                tracker,
+            )
         self.laws = self._laws(gain, law)
         check_tool(system, self.dt, method)
         for pair in range(len(system.pairs)):
@@ -287,10 +294,8 @@ class Operator(KeepsReadOnly):
         return SystemRun(self.system, states, accounts, SystemState(self.system, going.data))
 
     def room_for(self, state: SystemState) -> Array:
-        """A copy of a state's numbers, with as much room for kept polytopes as the laws need."""
-        length = state_length(self.system)
-        kept = N_POLYTOPE * len(self.system.pairs) if keeps_polytopes(self.laws) else 0
-        data = np.zeros(length + kept)
+        """A copy of a state's numbers, with room for what is kept beside its row."""
+        data = np.zeros(state_length(self.system) + kept_numbers(self.system, self.laws))
         given = state.data[: len(data)]
         data[: len(given)] = given
         return data

@@ -13,8 +13,10 @@ from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.simulation.flat_parts import pack_flat_parts
 from standoff.simulation.near_pairs import NearRows
 from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
+from standoff.simulation.solid_parts import kept_length, pack_solids, pair_numbers
 from standoff.simulation.system import System
 from standoff.simulation.system_state import state_length
+from standoff.solids.spatial.solid_model import SolidModel
 
 Array = NDArray[np.float64]
 KINDS = {"free": K.FREE, "fixed": K.FIXED, "driven": K.DRIVEN}
@@ -29,18 +31,20 @@ def pack_system(
     kept: bool = False,
     near: NearRows | None = None,
 ) -> Any:
-    """(layout, numbers, ints, reals, options), all read-only.
+    """(layout, numbers, ints, reals, options, solids), all read-only.
 
     `options` are those of all pairs; with `kept`, polytopes stand at the end of a state; with
     `near`, ticks search for near pairs.
     """
     tool = -1 if system.tool is None else system.tool
-    polytopes = state_length(system) if kept else 0
+    n_solid = sum(system.of_solids)
+    solids_at = state_length(system) if n_solid else 0
+    polytopes = state_length(system) + kept_length(n_solid) if kept else 0
     layout = [len(system.bodies), len(system.pairs), method, int(inside), tool, 0, 1, polytopes]
-    layout += [0, 0]  # of the search for near pairs
+    layout += [0, 0, solids_at]  # of the search for near pairs
     numbers = [*system.gravity, dt]
-    ints = [body.body.ints for body in system.bodies]
-    reals = [body.body.reals for body in system.bodies]
+    ints, reals = _convex_arrays(system)
+    solids = pack_solids(system.models)
     starts = [np.cumsum([0, *(len(part) for part in parts)]) for parts in (ints, reals)]
     flats_at = K.INT_HEADER + K.INT_BODY * len(system.bodies) + K.INT_PAIR * len(system.pairs)
     numbers_at = K.REAL_HEADER + K.REAL_BODY * len(system.bodies)
@@ -52,19 +56,19 @@ def pack_system(
         driven = column if body.kind == DRIVEN else -1
         column += body.kind == DRIVEN
         at = flats_at + len(flat_rows)
-        layout += [KINDS[body.kind], int(starts[0][number]), int(starts[1][number]), driven, at]
+        layout += [KINDS[body.kind], int(starts[0][number]), int(starts[1][number]), driven, at, 0]
         numbers += _mass_row(body)
         rows, found = pack_flat_parts(system.flats[number], numbers_at + len(flat_numbers))
         flat_rows += rows
         flat_numbers += found
-    for pair, contact in zip(system.pairs, system.contacts, strict=True):
-        layout += pair
-        numbers += [contact.stiffness, contact.damping, contact.friction, contact.slip_speed]
-    numbers += flat_numbers
+    pair_rows = _pair_rows(system)
+    layout += pair_rows[0]
+    numbers += pair_rows[1] + flat_numbers
     if system.coupler is not None:
         layout[K.I_COUPLER], layout[K.I_READING] = len(numbers), ticks_a_reading(system, dt)
         numbers += system.coupler.packed.tolist()
     layout += flat_rows
+    _put_solid_rows(layout, solids.starts)
     if near is not None:
         layout[K.I_NEAR], layout[K.I_NEAR_NUMBERS] = len(layout), len(numbers)
         layout += near.ints
@@ -75,10 +79,40 @@ def pack_system(
         np.concatenate(ints),
         np.concatenate(reals),
         options,
+        solids.arrays,
     )
-    for array in packed:
+    for array in (*packed[:-1], *solids.arrays):
         array.flags.writeable = False
     return packed
+
+
+def _convex_arrays(system: System) -> tuple[list[NDArray[np.int64]], list[Array]]:
+    """The packed arrays of each body, empty for a solid."""
+    convex = [None if isinstance(b.body, SolidModel) else b.body for b in system.bodies]
+    ints = [np.zeros(0, dtype=np.int64) if b is None else b.ints for b in convex]
+    return ints, [np.zeros(0) if b is None else b.reals for b in convex]
+
+
+def _put_solid_rows(layout: list[int], starts: list[list[int]]) -> None:
+    """Where the arrays of each body that meets a solid begin, behind what there is."""
+    for number, row in enumerate(starts):
+        if row:
+            layout[K.INT_HEADER + K.INT_BODY * number + K.B_SOLID] = len(layout)
+            layout += row
+
+
+def _pair_rows(system: System) -> tuple[list[int], list[float]]:
+    """(integers, numbers) of all pairs."""
+    rows: list[int] = []
+    numbers: list[float] = []
+    solid = 0
+    for number, (pair, contact) in enumerate(zip(system.pairs, system.contacts, strict=True)):
+        met = system.of_solids[number]
+        rows += [*pair, solid if met else -1]
+        solid += met
+        numbers += [contact.stiffness, contact.damping, contact.friction, contact.slip_speed]
+        numbers += pair_numbers(system.pair_models(number), system.depth(number))
+    return rows, numbers
 
 
 def ticks_a_reading(system: System, dt: float) -> int:

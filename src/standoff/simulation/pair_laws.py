@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.kernels.entries import paper_laws
+from standoff.kernels.state.arrays import N_OPTIONS
 from standoff.simulation.system import System
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw, PredictorCorrector, checked_law
@@ -48,6 +49,13 @@ def laws_beside(system: System, given: Laws) -> tuple[Law, ...]:
                 "law",
                 pair,
             )
+        if system.of_solids[number]:
+            raise StandoffError(
+                f"law has an entry for {shown(pair)}, a pair with a Solid: its places of contact "
+                "are found without a law; leave it out.",
+                "law",
+                pair,
+            )
         laws[number] = checked_law(law)
     return tuple(laws)
 
@@ -61,12 +69,13 @@ def law_inside(method: str, gain: float | None) -> PaperLaw:
 def packed_laws(system: System, laws: tuple[Law, ...], dt: float, inside: bool) -> Array:
     """All pairs' options, one after the other, with the addresses of their frames."""
     rows = [np.zeros(0)]
-    for (a, b), law in zip(system.pairs, laws, strict=True):
-        if inside:
+    for number, law in enumerate(laws):
+        if system.of_solids[number]:
+            rows.append(np.zeros(N_OPTIONS))
+        elif inside:
             rows.append(carried(pack_options(law.resolved(dt)), address_of(paper_laws.carried)))
         else:
-            bodies = system.bodies[a].body, system.bodies[b].body
-            rows.append(reach(*bodies, law, dt, None).options)
+            rows.append(reach(*system.convex_pair(number), law, dt, None).options)
     return np.concatenate(rows)
 
 

@@ -15,6 +15,7 @@ from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.motion.pose_function import path_of
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.mass_properties import MassProperties, mass_properties
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.inputs import check_body
 from standoff.wording import printable
 
@@ -27,7 +28,7 @@ class RigidBody(KeepsReadOnly):
 
     Attributes
     ----------
-    body : Body
+    body : Body or Solid
     kind : str
         "free", "fixed" or "driven".
     mass_properties : MassProperties or None
@@ -40,7 +41,7 @@ class RigidBody(KeepsReadOnly):
         Of one that is driven.
     """
 
-    body: Body
+    body: Body | SolidModel
     kind: str
     mass_properties: MassProperties | None
     pose: Pose
@@ -49,7 +50,7 @@ class RigidBody(KeepsReadOnly):
 
     @staticmethod
     def free(
-        body: Body,
+        body: Body | SolidModel,
         *,
         density: float | None = None,
         mass: float | None = None,
@@ -62,7 +63,7 @@ class RigidBody(KeepsReadOnly):
 
         Parameters
         ----------
-        body : Body
+        body : Body or Solid
         density : float, optional
             Of a solid body [mass/length³]; or give its mass.
         mass : float, optional
@@ -115,12 +116,12 @@ class RigidBody(KeepsReadOnly):
         return RigidBody(body, FREE, found, at, moving)
 
     @staticmethod
-    def fixed(body: Body, pose: PoseLike | None = None) -> RigidBody:
+    def fixed(body: Body | SolidModel, pose: PoseLike | None = None) -> RigidBody:
         """Return a body that never moves.
 
         Parameters
         ----------
-        body : Body
+        body : Body or Solid
             Of any kind but planar; a half-space is allowed.
         pose : Pose or what ``Pose.of`` reads, optional
             The identity if not given.
@@ -137,12 +138,12 @@ class RigidBody(KeepsReadOnly):
         return RigidBody(body, FIXED, None, at, Twist.zero())
 
     @staticmethod
-    def driven(body: Body, path: Any) -> RigidBody:
+    def driven(body: Body | SolidModel, path: Any) -> RigidBody:
         """Return a body that follows a path whatever it meets.
 
         Parameters
         ----------
-        body : Body
+        body : Body or Solid
         path : path
             Of ``standoff.motion``, or anything with ``pose(t)`` and ``twist(t)``.
 
@@ -171,14 +172,17 @@ class RigidBody(KeepsReadOnly):
         return f"<RigidBody {printable(self.body.name)}: {self.kind}{mass}>"
 
 
-def check_spatial(body: Body) -> None:
-    """Raise TypeError where something given is not a body, ValueError where it is planar."""
+def check_spatial(body: Body | SolidModel) -> None:
+    """Raise TypeError where something given is neither a body nor a solid in space, ValueError
+    where it is a planar body."""
+    if isinstance(body, SolidModel):
+        return
     check_body(body)
     if body.dimension == 2:
         raise StandoffError(f"{body!r} is planar: systems are spatial; extrude it.", "body", body)
 
 
-def _even(body: Body, density: float | None, mass: float | None) -> MassProperties:
+def _even(body: Body | SolidModel, density: float | None, mass: float | None) -> MassProperties:
     """Mass properties of a solid of uniform density, which a mass alone determines too."""
     if density is not None:
         return mass_properties(body, density)

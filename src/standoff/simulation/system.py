@@ -19,8 +19,10 @@ from standoff.motion import Pose, Twist
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.coupler import VirtualCoupler
-from standoff.simulation.flat_parts import FlatParts, flat_parts
+from standoff.simulation.flat_parts import FlatParts
 from standoff.simulation.rigid_body import FIXED, FREE, RigidBody
+from standoff.simulation.solid_parts import SOLID_SPRINGS, contact_model, flats_of
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.inputs import check_pair
 
 EARTH = (0.0, 0.0, -9.81)
@@ -73,6 +75,8 @@ class System(KeepsReadOnly):
     contacts: tuple[HuntCrossley, ...]
     gravity: Array
     flats: tuple[FlatParts, ...]
+    of_solids: tuple[bool, ...]
+    models: tuple[SolidModel | None, ...]
     coupler: VirtualCoupler | None
     tool: int | None
 
@@ -161,7 +165,24 @@ class System(KeepsReadOnly):
                 contact,
             )
         object.__setattr__(self, "contacts", contacts)
-        object.__setattr__(self, "flats", tuple(flat_parts(b.body) for b in bodies))
+        object.__setattr__(self, "flats", tuple(flats_of(b.body) for b in bodies))
+        met = tuple(any(isinstance(bodies[k].body, SolidModel) for k in p) for p in pairs)
+        object.__setattr__(self, "of_solids", met)
+        seen = {k for pair, solid in zip(pairs, met, strict=True) if solid for k in pair}
+        models = (contact_model(b.body) if k in seen else None for k, b in enumerate(bodies))
+        object.__setattr__(self, "models", tuple(models))
+
+    def pair_models(self, pair: int) -> tuple[SolidModel, SolidModel] | None:
+        """Both bodies of a pair as solids, where one of them is one."""
+        a, b = (self.models[k] for k in self.pairs[pair])
+        return (a, b) if self.of_solids[pair] and a and b else None
+
+    def convex_pair(self, pair: int) -> tuple[Body, Body]:
+        """Both bodies of a pair without a solid."""
+        a, b = (self.bodies[k].body for k in self.pairs[pair])
+        assert isinstance(a, Body)
+        assert isinstance(b, Body)
+        return a, b
 
     def give(self, pair: int) -> float:
         """The inverse of the least mass [1/mass] that a push between a pair's bodies moves: at the
@@ -180,6 +201,8 @@ class System(KeepsReadOnly):
 
     def springs(self, pair: int) -> float:
         """How many springs of its stiffness a pair's contact can be."""
+        if self.of_solids[pair]:
+            return SOLID_SPRINGS
         a, b = (self.flats[k] for k in self.pairs[pair])
         if not (a.several and b.several):
             return 1.0
@@ -206,11 +229,12 @@ def farthest(body: RigidBody) -> float:
     """A bound on how far a free body reaches from its centre of mass, length."""
     mass = body.mass_properties
     assert mass is not None
-    reals = body.body.reals
+    shape = body.body.boundary if isinstance(body.body, SolidModel) else body.body
+    reals = shape.reals
     middle = reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
     half = reals[L.BOX_HALF : L.BOX_HALF + 3]
     corner = np.abs(middle - mass.centre) + half
-    return float(np.linalg.norm(corner)) + body.body.radius
+    return float(np.linalg.norm(corner)) + (shape.radius if isinstance(shape, Body) else 0.0)
 
 
 def _tool(coupler: Any, tool: Any, bodies: tuple[RigidBody, ...]) -> int | None:
@@ -264,7 +288,9 @@ def _pairs(bodies: tuple[RigidBody, ...], given: Any) -> tuple[tuple[int, int], 
         pair = _pair(item, len(bodies), given)
         if pair in found or pair[::-1] in found:
             raise StandoffError(f"pairs names {pair} twice.", "pairs", given)
-        check_pair(bodies[pair[0]].body, bodies[pair[1]].body)
+        a, b = (bodies[k].body for k in pair)
+        if not (isinstance(a, SolidModel) or isinstance(b, SolidModel)):
+            check_pair(a, b)
         found.append(pair)
     return tuple(found)
 

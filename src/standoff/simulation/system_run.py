@@ -127,6 +127,12 @@ class SystemRun(KeepsReadOnly):
         """How many answers of the trackers since the start were not certified."""
         return int(self.states[-1, K.S_UNCERTIFIED])
 
+    @property
+    def jumps(self) -> int:
+        """How many places of contact of solids have ended since the start while they were pressed,
+        without another one in their stead: their force ended with them."""
+        return int(self.states[-1, K.S_JUMPS])
+
     def _touches(self) -> Array:
         shape = (len(self.accounts), len(self.system.pairs), K.N_TOUCH)
         pairs = slice(E.ACCOUNT_HEADER, E.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs))

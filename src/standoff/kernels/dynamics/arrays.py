@@ -21,15 +21,19 @@ FREE, FIXED, DRIVEN = range(3)
 # Integers of a system: header, a row a body, a row a pair, then the flat parts of the bodies. Of a
 # coupler: the number of the tool, -1 without one; where its numbers stand; ticks a reading. And
 # where the pairs' kept polytopes stand in the state, 0 where none are kept; where what the search
-# for near pairs reads stands in these integers, 0 without one, and in the numbers.
+# for near pairs reads stands in these integers, 0 without one, and in the numbers; where in the
+# state stands what pairs of solids have kept, 0 without such a pair.
 I_BODIES, I_PAIRS, I_METHOD, I_INSIDE, I_TOOL, I_COUPLER, I_READING, I_POLYTOPES = range(8)
-I_NEAR, I_NEAR_NUMBERS = 8, 9
-INT_HEADER = 10
+I_NEAR, I_NEAR_NUMBERS, I_SOLIDS = 8, 9, 10
+INT_HEADER = 11
 # A body: its kind, where its packed arrays begin among all bodies', its column in the table of
-# driven motions, and where its flat parts begin in these integers.
-B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS = range(5)
-INT_BODY = 5
-INT_PAIR = 2  # the numbers of its two bodies
+# driven motions, where its flat parts begin in these integers, and where the starts of its arrays
+# among the solids' stand, 0 for one that meets no solid and is none.
+B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS, B_SOLID = range(6)
+INT_BODY = 6
+# A pair: the numbers of its two bodies, and its place among the pairs of solids, -1 for another.
+P_SOLID = 2
+INT_PAIR = 3
 
 # Numbers of a system: gravity (3), the step, a row a body, a row a pair, the flat parts, then those
 # of a coupler (``coupler_arrays``).
@@ -37,14 +41,19 @@ GRAVITY, STEP = 0, 3
 REAL_HEADER = 4
 B_MASS, B_CENTRE, B_INERTIA, B_INVERSE = 0, 1, 4, 13  # centre and inertia in the body's axes
 REAL_BODY = 22
-P_STIFFNESS, P_DAMPING, P_FRICTION, P_SLIP = range(4)
-REAL_PAIR = 4
+# A pair: its contact, then what a pair of solids is asked: the depth it is meant for, the sizes of
+# both, the tolerance, lengths, the part of the sizes and distances that is for rounding, and within
+# which length spots share a spring.
+P_STIFFNESS, P_DAMPING, P_FRICTION, P_SLIP, P_DEPTH, P_SIZE, P_TOLERANCE, P_ROUNDING = range(8)
+P_SPAN = 8
+REAL_PAIR = 9
 
 # The state: time, energy lost in contacts, energy that driven bodies and a coupler gave, the
-# greatest depth so far, ticks with a pair that was not certified; a row a body; a row a pair; a
-# coupler's own (``coupler_arrays``); and the polytopes that pairs in penetration have kept, which
-# are not recorded.
-S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED = range(5)
+# greatest depth so far, ticks with a pair that was not certified, places of contact of solids that
+# ended deep; a row a body; a row a pair; a
+# coupler's own (``coupler_arrays``); and, not recorded, what pairs of solids have kept
+# (``kernels.solids.contact_places``) and the polytopes that pairs in penetration have.
+S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED, S_JUMPS = range(6)
 STATE_HEADER = 8
 X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
 N_BODY = 18
@@ -68,6 +77,19 @@ N_LOAD = 6
 N_DRIVEN = 18
 
 
+class Solids(NamedTuple):
+    """Arrays of all solids, one behind the other, as pointers: of the boundaries, of leaves and
+    trees, of the directions from vertices.
+    """
+
+    ints: Any
+    reals: Any
+    own: Any
+    numbers: Any
+    fan_ints: Any
+    fan_reals: Any
+
+
 class System(NamedTuple):
     """A packed system: arrays where parts of them are pointed to, else pointers."""
 
@@ -77,6 +99,7 @@ class System(NamedTuple):
     reals: Any  # array
     options: Any  # pointer: N_OPTIONS numbers a pair
     coupler: Any  # pointer: the numbers of a coupler (``coupler_arrays``), where there is one
+    solids: Any
 
 
 class Scratch(NamedTuple):
@@ -92,6 +115,7 @@ class Scratch(NamedTuple):
     spots: Any  # see ``flat_contact``
     change: Any  # N_CHANGE numbers of the pair whose frame it is
     polytope: Any  # of a pair that keeps none
+    contact: Any  # what a frame of two solids fills (``solid_pairs``)
     near: Any  # integers of the search for near pairs, and what it finds (``near_arrays``)
     near_numbers: Any  # and its numbers
 
@@ -122,6 +146,12 @@ def bodies_of(system, pair):
     """The numbers of a pair's two bodies."""
     o = INT_HEADER + INT_BODY * n_bodies(system) + INT_PAIR * pair
     return system.layout[o], system.layout[o + 1]
+
+
+@kernel
+def solid_pair(system, pair):
+    """A pair's place among the pairs of solids; -1 for another."""
+    return system.layout[INT_HEADER + INT_BODY * n_bodies(system) + INT_PAIR * pair + P_SOLID]
 
 
 @kernel

@@ -33,6 +33,7 @@ from standoff.kernels.dynamics.inside_law import (
 from standoff.kernels.dynamics.near_arrays import n_visited, visited
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import power, write_rates
+from standoff.kernels.dynamics.solid_pairs import is_of_solids, touch_solids
 from standoff.kernels.state.arrays import (
     FAR,
     N_STATE,
@@ -70,6 +71,8 @@ def touch_tracked(system, pair, state, rows, first, scratch):
     if state[pair_row(system, pair) + N_STATE + STATUS] == FAR:
         clear_touch(scratch, pair)
         return 0.0
+    if is_of_solids(system, pair):
+        return touch_solids(system, pair, state, rows, first, scratch)
     before = read_state(pointer(state, pair_row(system, pair)))
     write_motion(system, pair, rows, first, scratch.motion)
     pose, n = motion_of(scratch).pose, before.normal

@@ -61,6 +61,7 @@ from standoff.kernels.dynamics.servo_arrays import (
     Y_MISSED,
     Y_TICKS,
 )
+from standoff.kernels.dynamics.solid_pairs import begin_solids
 from standoff.kernels.entries.simulation import (
     SYSTEM,
     keep_alive,
@@ -214,6 +215,7 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
     moment, answered = np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64)
     reading = np.zeros(N_READING)
     reading[G_FAULT] = MISSING
+    begin_solids(system, state, work.counts, scratch)
     joined = pointer(state, coupler_row(system))
     begun = state[S_TIME]
     asleep = time_asleep(plan, asked, moment)

@@ -10,6 +10,7 @@ from standoff.kernels.compiler.entry import INT, INTS, READ, REAL, ROWS, WRITE
 from standoff.kernels.dynamics.arrays import (
     FREE,
     I_COUPLER,
+    I_SOLIDS,
     N_LOAD,
     N_TOUCH,
     S_DEEPEST,
@@ -17,6 +18,7 @@ from standoff.kernels.dynamics.arrays import (
     S_UNCERTIFIED,
     STEP,
     Scratch,
+    Solids,
     System,
     body_row,
     kind_of,
@@ -41,6 +43,12 @@ from standoff.kernels.dynamics.near_pairs import catch_up, find_near
 from standoff.kernels.dynamics.operator import change_of, step_bodies
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import kinetic, potential, power
+from standoff.kernels.dynamics.solid_pairs import (
+    CONTACT_ROOM,
+    begin_solids,
+    is_of_solids,
+    track_solids,
+)
 from standoff.kernels.dynamics.system import clear_loads, touch_tracked
 from standoff.kernels.entries.frames import frame
 from standoff.kernels.frame.inputs import (
@@ -88,6 +96,7 @@ def scratch_for(system):
         np.zeros(N_SPOTS),
         np.zeros(N_CHANGE),
         np.zeros(N_POLYTOPE),
+        np.zeros(CONTACT_ROOM if system.layout[I_SOLIDS] > 0 else 1),
     )
 
 
@@ -104,6 +113,7 @@ def pointed(arrays, near):
         pointer(arrays[7], 0),
         pointer(arrays[8], 0),
         pointer(arrays[9], 0),
+        pointer(arrays[10], 0),
         pointer(near[0], 0),
         pointer(near[1], 0),
     )
@@ -114,7 +124,7 @@ def keep_alive(arrays, near, counts, log):
     """Call this after the last use of what points into the arrays: Numba frees an array after its
     own last use, and a pointer is not one."""
     total = len(counts) + len(log) + len(near[0]) + len(near[1])
-    for k in range(10):
+    for k in range(11):
         total += len(arrays[k])
     return total
 
@@ -130,9 +140,23 @@ def work_for(system, pair, state, counts, log, scratch):
 
 
 @kernel
+def book_answer(state, o):
+    """Count what a pair's row tells: whether it is sound, and how deep it is."""
+    status = state[o + N_STATE + STATUS]
+    # of an overlap alone the contact's depth is not known: its force is not either
+    sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL, FAR)
+    state[S_UNCERTIFIED] += 0.0 if sound else 1.0
+    state[S_DEEPEST] = max(state[S_DEEPEST], -state[o + N_STATE + DISTANCE])
+
+
+@kernel
 def track_pair(system, pair, state, h, work, scratch):
     """The tracker's frame of a pair at the end of a tick; FINE, or what it refuses."""
     o = pair_row(system, pair)
+    if is_of_solids(system, pair):
+        why = track_solids(system, pair, state, work.counts, scratch)
+        book_answer(state, o)
+        return why
     write_motion(system, pair, state, body_row(0), scratch.motion)
     packed, options = packed_pair(system, pair), options_of(system, pair)
     inputs = inputs_at(pointer(scratch.motion, 0), True)
@@ -147,11 +171,7 @@ def track_pair(system, pair, state, h, work, scratch):
     kept, out = pointer(state, o), pointer(state, o + N_STATE)
     own = work_for(system, pair, state, work.counts, work.events, scratch)
     frame(packed, inputs, h, options, kept, out, own)
-    status = out[STATUS]
-    # of an overlap alone the contact's depth is not known: its force is not either
-    sound = status in (CONVERGED, TRACKING, LOCAL, GLOBAL, FAR)
-    state[S_UNCERTIFIED] += 0.0 if sound else 1.0
-    state[S_DEEPEST] = max(state[S_DEEPEST], -out[DISTANCE])
+    book_answer(state, o)
     return FINE
 
 
@@ -212,15 +232,25 @@ def tick_bodies(system, state, h, drives, tick, work, scratch):
 
 @kernel
 def system_of(packed):
-    """A system by pointers, of its arrays (layout, numbers, ints, reals, options)."""
-    layout, numbers, ints, reals, options = packed
+    """A system by pointers, of its arrays (layout, numbers, ints, reals, options, solids)."""
+    layout, numbers, ints, reals, options, solids = packed
     coupler = pointer(numbers, layout[I_COUPLER])
+    x = Solids(
+        pointer(solids[0], 0),
+        pointer(solids[1], 0),
+        pointer(solids[2], 0),
+        pointer(solids[3], 0),
+        pointer(solids[4], 0),
+        pointer(solids[5], 0),
+    )
     return System(
-        pointer(layout, 0), pointer(numbers, 0), ints, reals, pointer(options, 0), coupler
+        pointer(layout, 0), pointer(numbers, 0), ints, reals, pointer(options, 0), coupler, x
     )
 
 
-SYSTEM = types.Tuple((INTS, READ, INTS, READ, READ))
+# Boundaries, leaves and trees, directions from vertices: integers and numbers of each.
+ALL_SOLIDS = types.Tuple((INTS, READ, INTS, READ, INTS, READ))
+SYSTEM = types.Tuple((INTS, READ, INTS, READ, READ, ALL_SOLIDS))
 RECORDS = types.Tuple((ROWS, ROWS))
 DRIVES = types.Tuple((ROWS, WRITE))
 
@@ -229,11 +259,11 @@ DRIVES = types.Tuple((ROWS, WRITE))
 def run_system(packed, state, drives, every, records):
     """Many ticks; the state is changed in place.
 
-    `packed` is (layout, numbers, ints, reals, options). `records` are the states and the accounts:
-    row 0 is of the start, each next one of a tick `every` later. `drives` are a table of the driven
-    bodies' motions, one row per half tick, and readings of a coupler's device, N_READING numbers
-    each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE), or the
-    tick after which a pose or twist was refused, and why: the rows before it are written.
+    `packed` is (layout, numbers, ints, reals, options, solids). `records` are the states and the
+    accounts: row 0 is of the start, each next one of a tick `every` later. `drives` are a table of
+    the driven bodies' motions, one row per half tick, and readings of a coupler's device, N_READING
+    numbers each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE),
+    or the tick after which a pose or twist was refused, and why: the rows before it are written.
     """
     states, accounts = records
     system = system_of(packed)
@@ -244,7 +274,8 @@ def run_system(packed, state, drives, every, records):
     work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
     h = system.numbers[STEP]
     begun = state[S_TIME]
-    width = states.shape[1]  # all but the polytopes
+    begin_solids(system, state, work.counts, scratch)
+    width = states.shape[1]  # all but what is kept beside it
     states[0, :] = state[:width]
     account(system, state, accounts[0], scratch)
     table, readings = drives
@@ -287,6 +318,7 @@ def load_system(packed, state, loads, row):
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
+    begin_solids(system, state, work.counts, scratch)
     for pair in range(n_pairs(system)):
         why = track_pair(system, pair, state, system.numbers[STEP], work, scratch)
         if why != FINE:

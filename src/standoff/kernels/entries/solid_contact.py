@@ -12,7 +12,7 @@ from standoff.kernels.solids.contact_proof import parts_pieces
 from standoff.kernels.solids.contact_search import follow_signed, search_signed
 from standoff.kernels.solids.contact_sets import gather_signed
 from standoff.kernels.solids.patch import span_all
-from standoff.kernels.solids.spatial_progress import LOST, N_MINIMA, NORMAL
+from standoff.kernels.solids.spatial_progress import ABOVE, LOST, N_MINIMA, NORMAL
 
 # As a search has them, and what sets of minima are written to.
 LISTS = types.Tuple((WRITE, WRITE, WRITE))
@@ -30,7 +30,7 @@ def signed_minima(solids, pose, fans, front, lists, asked, stack, counts):
     c = pointer(counts, 0)
     for k in range(len(counts)):
         c[k] = 0
-    follow_signed(a, b, around, front_at(front), best, minima, c)
+    follow_signed(a, b, around, front_at(front), best[ABOVE], best, minima, c)
     search_signed(a, b, around, best, minima, pointer(stack, 0), len(stack) // 2, c)
     n = gather_signed(a, b, best, minima, asked[0], sets)
     if n > 0 and asked[0] > 0.0:

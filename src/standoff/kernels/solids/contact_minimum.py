@@ -28,6 +28,7 @@ from standoff.kernels.solids.spatial_progress import ball_round, middle
 from standoff.kernels.solids.spatial_tolerances import (
     CONTACT_ERROR,
     FLAT_VALLEY,
+    NEARLY_LEVEL,
     PARALLEL_EDGES,
     SURE_NORMAL,
 )
@@ -69,12 +70,18 @@ def moved_side(side, by):
 
 
 @kernel
-def nearest_moved_apart(a, b, counts):
-    """Parameters of the nearest points of two parts, of which one is moved away along a normal of
-    one by as much as both are long: a start from which Newton's method is near a common normal."""
+def middles_of(a, b):
     u, v = middle(a.box)
     s, t = middle(b.box)
-    q = (u, v, s, t)
+    return (u, v, s, t)
+
+
+@kernel
+def nearest_moved_apart(a, b, start, counts):
+    """Parameters of the nearest points of two parts, of which one is moved away along a normal of
+    one by as much as both are long: a start from which Newton's method is near a common normal.
+    They are looked for from `start` on."""
+    q = middles_of(a, b)
     ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
     n = ZERO
     if a.side.own[leaf_ints(a.side, a.leaf) + S.DIM] == 2:
@@ -85,7 +92,7 @@ def nearest_moved_apart(a, b, counts):
     far = ball_round(a)[1] + ball_round(b)[1] + norm(sub(jb[0], ja[0]))
     away = scale(far / length, n) if length > 0.0 else ZERO
     moved = moved_side(b.side, away)
-    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, q, counts)[0]
+    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, start, counts)[0]
 
 
 @shared
@@ -113,14 +120,18 @@ def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
         )
         for i in range(4):
             if not low[i] <= trial[i] <= high[i]:
-                return False, q, n, d
+                # of features that are level up to rounding the next one may be anywhere
+                return error <= CONTACT_ERROR, q, n, d
         ka, kb = jets_at(a, leaf_a, b, leaf_b, trial)
         new_n = unit(sub(n, (y[4], y[5], y[6])))
         new_d = dot(new_n, sub(kb[0], ka[0]))
         contact_scales(ka, kb, span, scales)
         new_error = scaled_residual(ka, kb, new_n, new_d, span, scales, r)
-        most = (MAY_GROW if k < FREE_STEPS else 1.0) if regular else SHRINKS
-        if not new_error < most * error:
+        most = SHRINKS * error
+        if regular:
+            # nearly level features begin with next to no error, far from where they are level
+            most = MAY_GROW * max(error, NEARLY_LEVEL) if k < FREE_STEPS else error
+        if not new_error < most:
             break
         q, n, d, error, ja, jb = trial, new_n, new_d, new_error, ka, kb
     return error <= CONTACT_ERROR, q, n, d

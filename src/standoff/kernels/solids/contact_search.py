@@ -6,14 +6,15 @@ so that boxes which are farther from each other than the length hold none; and i
 opposed.
 """
 
-from math import asin, pi
+from math import inf
 
-from standoff.kernels.algebra.vectors import cross, dot, norm, scale, sub
+from standoff.kernels.algebra.vectors import cross, dot, norm, scale
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_minimum import (
     is_signed_minimum,
     limits_of,
+    middles_of,
     nearest_moved_apart,
     signed_minimum,
 )
@@ -22,6 +23,7 @@ from standoff.kernels.solids.front_branches import (
     B_AT,
     B_LEAVES,
     B_POINTS,
+    B_TAKEN,
     BRANCH_REALS,
     leaf_beside,
 )
@@ -29,20 +31,10 @@ from standoff.kernels.solids.front_motion import put_three
 from standoff.kernels.solids.front_rows import N_BRANCHES
 from standoff.kernels.solids.over_plane import is_plane_leaf
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
-from standoff.kernels.solids.spatial_boxes import (
-    angle_between,
-    cone_of,
-    gap_of,
-    node_centre,
-    node_reach,
-)
+from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
 from standoff.kernels.solids.spatial_closing import no_pair
 from standoff.kernels.solids.spatial_minimum import jets_at
-from standoff.kernels.solids.spatial_pieces import (
-    leaf_box,
-    leaf_ints,
-    on_solid,
-)
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_box, leaf_ints, on_solid
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BOUND,
@@ -60,41 +52,13 @@ from standoff.kernels.solids.spatial_progress import (
     evaluations,
 )
 from standoff.kernels.solids.spatial_search import node_ints
-from standoff.kernels.solids.spatial_tolerances import CONE_SPARE, PAST_SIDE
+from standoff.kernels.solids.spatial_tolerances import PAST_SIDE
 from standoff.kernels.solids.stationary import is_stationary
 
 # Widths of a leaf by which Newton's method may leave it on its way, and end outside of it.
 ASTRAY, ENDS_BEYOND = 1.0, PAST_SIDE
 # A branch may go anywhere on its face, so far in units of its leaf.
 ANYWHERE = 64.0
-
-
-@kernel
-def leads_past(axis, angle, way, spread):
-    """Are all directions within `spread` of a unit vector outside a cone?"""
-    return angle_between(axis, way) - angle - CONE_SPARE > spread
-
-
-@kernel
-def may_oppose(a, i, b, j, gap):
-    """May two nodes hold features with a common normal, along the line between their points, from
-    either to the other? False is proven."""
-    axis_a, angle_a = cone_of(a, i)
-    axis_b, angle_b = cone_of(b, j)
-    if angle_a < 0.0 or angle_b < 0.0:
-        return False
-    if pi - angle_a - angle_b - CONE_SPARE - angle_between(axis_a, axis_b) > 0.0:
-        return False
-    delta = sub(node_centre(b, j), node_centre(a, i))
-    length, reach = norm(delta), node_reach(a, i) + node_reach(b, j)
-    if gap <= 0.0 or length <= reach:
-        return True
-    n, spread = scale(1.0 / length, delta), asin(reach / length)
-    back = scale(-1.0, n)
-    apart = leads_past(axis_a, angle_a, n, spread) or leads_past(axis_b, angle_b, back, spread)
-    if not apart:
-        return True
-    return not (leads_past(axis_a, angle_a, back, spread) or leads_past(axis_b, angle_b, n, spread))
 
 
 @kernel
@@ -114,14 +78,14 @@ def is_face(side, leaf):
 
 
 @kernel
-def keep_signed(a, b, fans, leaves, spot, best, minima):
-    """Keep a pair of points with a common normal, if both are on the solids; of two edges' two
-    normals the one that both solids have. spot: parameters, normal, signed distance."""
+def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
+    """Keep a pair of points with a common normal, if both are on the solids and its depth is no
+    more than `deepest`; of two edges' two normals the one that both solids have. spot: parameters,
+    normal, signed distance."""
     q, n, d = spot
-    horizon = best[ABOVE]
-    if abs(d) > horizon or not on_solid(a, leaves[0], q[0], q[1]):
+    if abs(d) > (best[ABOVE] if d >= 0.0 else deepest):
         return
-    if not on_solid(b, leaves[1], q[2], q[3]):
+    if not (on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])):
         return
     still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
     faces = is_face(a, leaves[0]) or is_face(b, leaves[1])
@@ -161,36 +125,49 @@ def is_askew(plane, edge, face, line):
 
 
 @kernel
-def look_in_leaves(a, leaf_a, b, leaf_b, fans, best, minima, counts):
-    """Newton's method in a pair of leaves. Of two planes it is left out: what their faces share has
-    corners, which other pairs hold."""
-    counts[LEAF_PAIRS] += 1
-    if is_plane_leaf(a, leaf_a) and is_plane_leaf(b, leaf_b):
-        return
-    box_a, box_b = leaf_box(a, leaf_a), leaf_box(b, leaf_b)
-    pa, pb = S.Part(a, leaf_a, box_a), S.Part(b, leaf_b, box_b)
+def rests_for(a, b, turn, best):
+    """How far B may move before two leaves, as parts, may hold a common normal up to best[ABOVE],
+    length; 0: they may now. `turn`: of B as it moves, radians per length. Two planes never do: what
+    their faces share has corners, which other pairs hold."""
+    if is_plane_leaf(a.side, a.leaf) and is_plane_leaf(b.side, b.leaf):
+        return inf
     horizon = best[ABOVE]
-    low, free, _ = no_pair(pa, pb, horizon, best[ROUNDING], 0.0)
-    if low > horizon or free > 0.0:
-        return
-    q = nearest_moved_apart(pa, pb, counts)
-    ja, jb = jets_at(a, leaf_a, b, leaf_b, q)
-    if is_askew((a, leaf_a), (b, leaf_b), ja, jb) or is_askew((b, leaf_b), (a, leaf_a), jb, ja):
-        return
-    astray = limits_of((box_a, box_b), ASTRAY)
-    found, q, n, d = signed_minimum(a, leaf_a, b, leaf_b, q, best[SIZE], astray, counts)
-    if not found:
-        return
-    low, high = limits_of((box_a, box_b), ENDS_BEYOND)
-    for k in range(4):
-        if not low[k] <= q[k] <= high[k]:
-            return
-    keep_signed(a, b, fans, (leaf_a, leaf_b), (q, n, d), best, minima)
+    low, free, _ = no_pair(a, b, horizon, best[ROUNDING], turn)
+    return max(low - horizon, 0.0) if low >= horizon else free
 
 
 @kernel
-def follow_signed(a, b, fans, front, best, minima, counts):
-    """Go on with each branch of the frame before, wherever on its faces and edges it leads."""
+def normal_in_leaves(a, b, q, best, counts):
+    """(whether Newton's method comes from parameters to a common normal of two leaves, as parts,
+    parameters, n, d)."""
+    ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
+    one, other = (a.side, a.leaf), (b.side, b.leaf)
+    if is_askew(one, other, ja, jb) or is_askew(other, one, jb, ja):
+        return False, q, ZERO, 0.0
+    astray, boxes = limits_of((a.box, b.box), ASTRAY), limits_of((a.box, b.box), ENDS_BEYOND)
+    found, q, n, d = signed_minimum(a.side, a.leaf, b.side, b.leaf, q, best[SIZE], astray, counts)
+    for k in range(4):
+        found = found and boxes[0][k] <= q[k] <= boxes[1][k]
+    return found, q, n, d
+
+
+@kernel
+def look_in_leaves(a, leaf_a, b, leaf_b, fans, best, minima, counts):
+    """Newton's method in a pair of leaves, from where they are nearest moved apart."""
+    counts[LEAF_PAIRS] += 1
+    pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
+    if rests_for(pa, pb, 0.0, best) > 0.0:
+        return
+    q = nearest_moved_apart(pa, pb, middles_of(pa, pb), counts)
+    found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
+    if found:
+        keep_signed(a, b, fans, (leaf_a, leaf_b), (q, n, d), best[ABOVE], best, minima)
+
+
+@kernel
+def follow_signed(a, b, fans, front, deepest, best, minima, counts):
+    """Go on with each branch of the frame before, wherever on its faces and edges it leads, down to
+    a depth; those that come to no minimum there have ended (B_TAKEN 0)."""
     r = front.branches
     for i in range(int(front.store[N_BRANCHES])):
         o = BRANCH_REALS * i
@@ -201,13 +178,16 @@ def follow_signed(a, b, fans, front, best, minima, counts):
         ja, jb = jets_at(a, leaf_a, b, leaf_b, q)
         put_three(r, o + B_POINTS, ja[0])
         put_three(r, o + B_POINTS + 3, jb[0])
-        if not found:
-            continue
-        leaf_a, u = leaf_holding(a, leaf_a, q[0], q[1])
-        leaf_b, s = leaf_holding(b, leaf_b, q[2], q[3])
+        count, leaf_a, leaf_b, u, s = int(best[N_MINIMA]), -1, -1, 0.0, 0.0
+        if found:
+            leaf_a, u = leaf_holding(a, int(r[o + B_LEAVES]), q[0], q[1])
+            leaf_b, s = leaf_holding(b, int(r[o + B_LEAVES + 1]), q[2], q[3])
         if leaf_a >= 0 and leaf_b >= 0:
             at = (u, q[1], s, q[3])
-            keep_signed(a, b, fans, (leaf_a, leaf_b), (at, n, d), best, minima)
+            keep_signed(a, b, fans, (leaf_a, leaf_b), (at, n, d), deepest, best, minima)
+        kept = best[N_MINIMA] > count
+        is_one = kept and minima[MINIMUM_REALS * count + BOUND] != NO_MINIMUM
+        r[o + B_TAKEN] = 1.0 if is_one else 0.0
 
 
 @kernel
@@ -221,7 +201,7 @@ def search_signed(a, b, fans, best, minima, stack, most, counts):
         i, j = stack[2 * count], stack[2 * count + 1]
         counts[NODE_PAIRS] += 1
         gap = gap_of(a, i, b, j) - best[ROUNDING]
-        if gap > best[ABOVE] or not may_oppose(a, i, b, j, gap):
+        if gap > best[ABOVE] or normals_shut_for(a, i, b, j, gap, 1.0) > 0.0:
             continue
         if evaluations(counts) > best[BUDGET] or count + 2 > most:
             best[LOST] += 1.0

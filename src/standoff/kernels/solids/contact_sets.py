@@ -117,7 +117,7 @@ def gather_signed(a, b, best, minima, wider, sets):
     n = 0
     for i in range(int(best[N_MINIMA])):
         o = MINIMUM_REALS * i
-        if minima[o + BOUND] == NO_MINIMUM or abs(minima[o]) > best[ABOVE] - wider:
+        if minima[o + BOUND] == NO_MINIMUM or minima[o] > best[ABOVE] - wider:
             continue
         at = n
         for k in range(n):

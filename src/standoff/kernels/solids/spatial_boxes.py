@@ -126,32 +126,65 @@ def shut_for(a, i, b, j, gap, radius):
 
     A motion counts as the greatest shift of B's points; it is at least `radius` times its angle.
     What is proven while the nodes are apart only."""
-    axis_a, angle_a = cone_of(a, i)
-    axis_b, angle_b = cone_of(b, j)
     if gap <= 0.0:
         return 0.0
-    if angle_a < 0.0 or angle_b < 0.0:
+    cones = cone_of(a, i), cone_of(b, j)
+    if cones[0][1] < 0.0 or cones[1][1] < 0.0:
         return gap
-    # no two normals are opposed: a turn brings them nearer to it
-    shut = radius * (pi - angle_a - angle_b - CONE_SPARE - angle_between(axis_a, axis_b))
+    shut = unopposed_for(cones, radius)
     delta = sub(node_centre(b, j), node_centre(a, i))
     length = norm(delta)
     reach = node_reach(a, i) + node_reach(b, j)
-    if length <= reach:
-        return min(gap, shut)
+    if length > reach:
+        shut = max(shut, led_past_for(cones, scale(1.0 / length, delta), length, reach, radius))
+    return min(gap, shut)
+
+
+@kernel
+def normals_shut_for(a, i, b, j, gap, radius):
+    """How far B may move before two nodes may hold features with a common normal along the line
+    between their points, from either to the other, length; 0 or less where they may. The nodes
+    need not be apart."""
+    cones = cone_of(a, i), cone_of(b, j)
+    if cones[0][1] < 0.0 or cones[1][1] < 0.0:
+        return inf
+    shut = unopposed_for(cones, radius)
+    delta = sub(node_centre(b, j), node_centre(a, i))
+    length = norm(delta)
+    reach = node_reach(a, i) + node_reach(b, j)
+    if shut > 0.0 or gap <= 0.0 or length <= reach:
+        return shut
     n = scale(1.0 / length, delta)
-    spread = asin(reach / length)
+    there = led_past_for(cones, n, length, reach, radius)
+    back = led_past_for(cones, scale(-1.0, n), length, reach, radius)
+    return max(shut, min(gap, min(there, back)))
+
+
+@kernel
+def unopposed_for(cones, radius):
+    """How far B may move while no two normals of both cones are opposed, length: a turn brings them
+    nearer to it."""
+    (axis_a, angle_a), (axis_b, angle_b) = cones
+    return radius * (pi - angle_a - angle_b - CONE_SPARE - angle_between(axis_a, axis_b))
+
+
+@kernel
+def led_past_for(cones, n, length, reach, radius):
+    """How far B may move while the normals of one node lead past the other along n, the unit vector
+    between the middles of both, or against it; length, below 0 where they do not."""
+    (axis_a, angle_a), (axis_b, angle_b) = cones
+    spread, shut = asin(reach / length), -1.0
     # A's normals lead past B: a shift of B widens the directions to it
     free = angle_between(axis_a, n) - angle_a - CONE_SPARE
     if free > spread:
-        shut = max(shut, length * sin(min(free, 0.5 * pi)) - reach)
+        shut = length * sin(min(free, 0.5 * pi)) - reach
     # B's lead past A: half of what is free for its turn, half for its shift
     free = pi - angle_b - CONE_SPARE - angle_between(axis_b, n)
     if free > spread:
         half = 0.5 * (free - spread)
         shift = length * sin(min(spread + half, 0.5 * pi)) - reach
         shut = max(shut, min(radius * half, shift))
-    return min(gap, shut)
+    return shut
 
 
 @kernel

@@ -84,3 +84,13 @@ CONTACT_ERROR: Final = 1e-9
 Newton's method has come to an end, some thousand roundings of the least of its pivots."""
 PARALLEL_EDGES: Final = 1e-5
 """Sine: edges at a smaller angle have no common normal of their own; `PIVOT` is its square."""
+FELT_SPARE: Final = 1e-6
+"""Of the sizes: by how much the signed distance of a place may jump beyond its motion where it goes
+from one feature to the next, and how deep one may be born."""
+ALIKE: Final = 0.5
+"""Cosine, of 60 degrees: normals of one region in which two boundaries overlap; another way out of
+it is farther off."""
+NEARLY_LEVEL: Final = 1e-3
+"""Relative, of the sizes and of unit tangents: an error of the contact-regular form below which the
+first steps of its Newton's method may make it so great: a rim that is tilted by 1e-8 has an error
+of 1e-8 all around, and is level in one place."""

@@ -212,7 +212,7 @@ def run() -> Runs:
 
 def exact_distances(made: sim.SystemRun) -> Array:
     """Return certified distances of lens and tool, searched again at each recorded pose [m]."""
-    ball, home = made.system.bodies[1].body, Pose.identity()
+    (_, ball), home = made.system.convex_pair(0), Pose.identity()
     places = zip(made.rotations(1), made.positions(1), strict=True)
     return np.array([so.distance(lens(), ball, home, Pose(R, p)).distance for R, p in places])
 

@@ -1,0 +1,256 @@
+"""A pair of solids in a tick: its places of contact at the end of one, and what they push.
+
+Each spot carries a spring, as the corners of a body of flat faces do, so that a body that lies on
+several goes on with the springs it has as it tips (``kernels.solids.contact_places``).
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
+from standoff.kernels.algebra.vectors import add, norm, rotate
+from standoff.kernels.compiler.decorators import ahead, kernel, pointer
+from standoff.kernels.dynamics.arrays import (
+    B_SOLID,
+    I_SOLIDS,
+    P_DEPTH,
+    P_ROUNDING,
+    P_SIZE,
+    P_SPAN,
+    P_TOLERANCE,
+    S_JUMPS,
+    bodies_of,
+    body_ints,
+    body_row,
+    n_pairs,
+    pair_numbers,
+    pair_row,
+    solid_pair,
+)
+from standoff.kernels.dynamics.forces import Spot, clear_touch, press
+from standoff.kernels.dynamics.pair_motion import write_motion
+from standoff.kernels.dynamics.rigid_body import put
+from standoff.kernels.pair.events import N_COUNT_SLOTS
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.contact_front import Both, find_contacts
+from standoff.kernels.solids.contact_places import (
+    F_ENDED,
+    F_LOST,
+    F_MADE,
+    F_PLACES,
+    F_POSE,
+    F_SPOTS,
+    KEPT_REALS,
+    P_A,
+    P_B,
+    P_DISTANCE,
+    P_FELT,
+    P_NORMAL,
+    S_DEPTH,
+    S_NORMAL,
+    S_SHARE,
+    Asked,
+    kept_front,
+    moved_lately,
+    place_at,
+    spot_at,
+    tell_places,
+)
+from standoff.kernels.solids.front_branches import MERGED_REALS, MOST_MERGED
+from standoff.kernels.solids.front_frame import FARTHEST_GONE, motion_between
+from standoff.kernels.solids.front_rows import GONE, N_ROWS
+from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS
+from standoff.kernels.solids.spatial_boxes import node_reach
+from standoff.kernels.solids.spatial_progress import (
+    ABOVE,
+    BEST_REALS,
+    BUDGET,
+    MINIMUM_REALS,
+    MOST_MINIMA,
+    ROUNDING,
+    SIZE,
+    TOLERANCE,
+)
+from standoff.kernels.solids.stationary import Fans
+from standoff.kernels.state.arrays import (
+    BAD_POSE_A,
+    BAD_POSE_B,
+    DISTANCE,
+    FAR,
+    FINE,
+    LOCAL,
+    LOWER_BOUND,
+    N_OUT,
+    N_STATE,
+    NORMAL,
+    NOT_CERTIFIED,
+    POINT_A,
+    POINT_B,
+    POSE_A,
+    POSE_B,
+    STATUS,
+    TRACKING,
+    UPPER_BOUND,
+    is_pose,
+)
+from standoff.kernels.values import Pose
+
+STILL = Pose((1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
+# Depths, for which a contact is meant, up to which places are looked for.
+LOOKED_FOR = 8.0
+# Common normals that a frame may come to, and evaluations that it may take.
+MOST_NORMALS, MOST_EVALUATIONS = 2048, 200_000.0
+# Of the scratch: what is asked and found, the common normals, and the sets of them, of which one
+# more than there are holds which are felt.
+AT_NORMALS = BEST_REALS
+AT_SETS = AT_NORMALS + MINIMUM_REALS * MOST_NORMALS
+AT_MERGED = AT_SETS + SET_REALS * (MOST_SETS + 4)
+CONTACT_ROOM = AT_MERGED + MERGED_REALS * MOST_MERGED
+
+
+@kernel
+def is_of_solids(system, pair):
+    return solid_pair(system, pair) >= 0
+
+
+@kernel
+def kept_row(system, pair):
+    """Where in the state stands what a pair of solids has kept."""
+    return system.layout[I_SOLIDS] + KEPT_REALS * solid_pair(system, pair)
+
+
+@kernel
+def side_of(system, body, pose):
+    """A body's boundary at a pose, and its directions from vertices."""
+    at = ahead(system.layout, system.layout[body_ints(body) + B_SOLID])
+    x = system.solids
+    side = S.Side(
+        ahead(x.ints, at[0]),
+        ahead(x.reals, at[1]),
+        ahead(x.own, at[2]),
+        ahead(x.numbers, at[3]),
+        pose,
+        S.OUTSIDE,
+    )
+    return side, Fans(ahead(x.fan_ints, at[4]), ahead(x.fan_reals, at[5]))
+
+
+@kernel
+def both_of(system, pair, pose):
+    first, second = bodies_of(system, pair)
+    a, fans_a = side_of(system, first, STILL)
+    b, fans_b = side_of(system, second, pose)
+    return Both(a, b, (fans_a, fans_b))
+
+
+@kernel
+def ask_contacts(system, pair, pose, best):
+    """What is asked of a frame of two solids."""
+    o, x = pair_numbers(system, pair), system.numbers
+    best[SIZE] = x[o + P_SIZE]
+    best[ROUNDING] = x[o + P_ROUNDING] * (best[SIZE] + norm(pose.p))
+    best[TOLERANCE] = max(x[o + P_TOLERANCE], 4.0 * best[ROUNDING])
+    best[ABOVE] = LOOKED_FOR * x[o + P_DEPTH]
+    best[BUDGET], best[MOST_MINIMA] = MOST_EVALUATIONS, MOST_NORMALS
+
+
+@kernel
+def pose_at(kept):
+    return Pose(read_rotation(kept, F_POSE), read_vector(kept, F_POSE + 9))
+
+
+@kernel
+def find_places(system, pair, state, counts, scratch):
+    """The places of a pair of solids where its bodies are now; their poses are in the motion."""
+    m, kept = scratch.motion, pointer(state, kept_row(system, pair))
+    pose = relative_pose(pointer(m, POSE_A), pointer(m, POSE_B))
+    best = scratch.contact
+    ask_contacts(system, pair, pose, best)
+    both = both_of(system, pair, pose)
+    step, radius = 0.0, node_reach(both.b, 0)
+    if kept[F_MADE] > 0.0:
+        before = both_of(system, pair, pose_at(kept)).b
+        step, radius = motion_between(before, both.b, best[SIZE])
+    front = kept_front(kept, ahead(best, AT_MERGED))
+    front.store[GONE] += step
+    if front.store[GONE] > FARTHEST_GONE * best[SIZE]:
+        front.store[N_ROWS], front.store[GONE] = 0.0, 0.0
+    minima, sets = ahead(best, AT_NORMALS), ahead(best, AT_SETS)
+    for k in range(N_COUNT_SLOTS):
+        counts[k] = 0
+    find_contacts(both, front, radius, best, minima, counts)
+    span = system.numbers[pair_numbers(system, pair) + P_SPAN]
+    asked = Asked(moved_lately(kept, step), best[ABOVE], span)
+    tell_places(both, front, asked, best, minima, sets, kept)
+    put(pose.R, kept, F_POSE)
+    put(pose.p, kept, F_POSE + 9)
+
+
+@kernel
+def track_solids(system, pair, state, counts, scratch):
+    """The places of a pair of solids at the end of a tick, and its answer; FINE, or what is
+    refused."""
+    m = scratch.motion
+    write_motion(system, pair, state, body_row(0), m)
+    for side, why in ((POSE_A, BAD_POSE_A), (POSE_B, BAD_POSE_B)):
+        if not is_pose(pointer(m, side)):
+            return why
+    find_places(system, pair, state, counts, scratch)
+    out = pointer(state, pair_row(system, pair) + N_STATE)
+    kept = pointer(state, kept_row(system, pair))
+    tell_pair(kept, scratch.contact, pointer(m, POSE_A), out)
+    state[S_JUMPS] += kept[F_ENDED]
+    return FINE
+
+
+@kernel
+def begin_solids(system, state, counts, scratch):
+    """The places of all pairs of solids that have kept none."""
+    for pair in range(n_pairs(system)):
+        if is_of_solids(system, pair) and state[kept_row(system, pair) + F_MADE] == 0.0:
+            write_motion(system, pair, state, body_row(0), scratch.motion)
+            find_places(system, pair, state, counts, scratch)
+
+
+@kernel
+def tell_pair(kept, best, pose_a, out):
+    """The row of a pair's answer: of the deepest place that is felt, or the nearest."""
+    for k in range(N_OUT):
+        out[k] = 0.0
+    at, least = -1, inf
+    for k in range(int(kept[F_PLACES])):
+        o = place_at(k)
+        if kept[o + P_FELT] > 0.0 and kept[o + P_DISTANCE] < least:
+            at, least = o, kept[o + P_DISTANCE]
+    if at < 0:
+        # beyond it there is no place, so that none begins a contact
+        out[DISTANCE], out[LOWER_BOUND], out[UPPER_BOUND] = best[ABOVE], -inf, inf
+        out[STATUS] = FAR
+    else:
+        R, p = read_rotation(pose_a, 0), read_vector(pose_a, 9)
+        out[DISTANCE], out[LOWER_BOUND], out[UPPER_BOUND] = least, -inf, least
+        put(add(rotate(R, read_vector(kept, at + P_A)), p), out, POINT_A)
+        put(add(rotate(R, read_vector(kept, at + P_B)), p), out, POINT_B)
+        put(rotate(R, read_vector(kept, at + P_NORMAL)), out, NORMAL)
+        out[STATUS] = LOCAL if least < 0.0 else TRACKING
+    if kept[F_LOST] > 0.0:
+        out[STATUS] = NOT_CERTIFIED
+
+
+@kernel
+def touch_solids(system, pair, state, rows, first, scratch):
+    """Add what the places of a pair of solids push to its bodies' loads; the power that they
+    lose."""
+    clear_touch(scratch, pair)
+    write_motion(system, pair, rows, first, scratch.motion)
+    motion, kept = scratch.motion, pointer(state, kept_row(system, pair))
+    R, origin = read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)
+    lost = 0.0
+    for k in range(int(kept[F_SPOTS])):
+        at = spot_at(k)
+        n = rotate(R, read_vector(kept, at + S_NORMAL))
+        point = add(rotate(R, read_vector(kept, at)), origin)
+        spot = Spot(point, kept[at + S_DEPTH], kept[at + S_SHARE])
+        lost += press(system, pair, rows, first, motion, n, spot, scratch)
+    return lost

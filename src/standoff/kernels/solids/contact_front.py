@@ -1,0 +1,238 @@
+"""The front of a contact: pairs of nodes and of leaves that hold all common normals of two
+boundaries up to a length on both sides of 0, each with how far B may move before it is to be looked
+at.
+
+A pair of nodes rests by what is proven of it. In a pair of leaves that may hold a common normal now
+Newton's method goes on in each frame from where it came to. Where it came to none it is tried again
+in one of so many frames, or where a branch ends that may go on there.
+"""
+
+from math import inf
+from typing import Any, NamedTuple
+
+from standoff.kernels.algebra.rigid import read_vector
+from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.contact_ends import is_pressed, keep_end
+from standoff.kernels.solids.contact_minimum import middles_of, nearest_moved_apart
+from standoff.kernels.solids.contact_search import (
+    follow_signed,
+    keep_signed,
+    normal_in_leaves,
+    rests_for,
+)
+from standoff.kernels.solids.front_branches import B_LEAVES, B_POINTS, B_TAKEN, BRANCH_REALS
+from standoff.kernels.solids.front_frame import GROWN, GROWN_BY
+from standoff.kernels.solids.front_rows import FRAME, GONE, MAKING, N_BRANCHES, N_MADE, N_ROWS
+from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
+from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_ints
+from standoff.kernels.solids.spatial_progress import (
+    ABOVE,
+    BUDGET,
+    LEAF_PAIRS,
+    LOST,
+    N_MINIMA,
+    NODE_PAIRS,
+    ROUNDING,
+    ball_round,
+    evaluations,
+)
+from standoff.kernels.solids.spatial_search import node_ints
+
+# What a row holds: leaves (-1 - node where it is a node), up to which motion it rests, what
+# Newton's method came to, and where; where it came to none, from where it began.
+C_A, C_B, C_REST, C_TOLD, C_AT = 0, 1, 2, 3, 4
+CONTACT_REALS = 8
+# Not looked at yet; came to a common normal; came to none.
+UNSEEN, CAME, CAME_TO_NONE = 0.0, 1.0, 2.0
+# Of so many frames in one it is tried again in a pair of leaves in which it came to none.
+RETRIED_IN = 4
+
+
+class Both(NamedTuple):
+    """Two solids, B at its pose in A's frame, with the directions from their vertices."""
+
+    a: Any
+    b: Any
+    fans: Any
+
+
+@kernel
+def put_pair(front, k, i, j):
+    o, r = CONTACT_REALS * k, front.rows
+    r[o + C_A], r[o + C_B], r[o + C_REST], r[o + C_TOLD] = i, j, -inf, UNSEEN
+
+
+@kernel
+def make_rows(front):
+    """One row, of both roots."""
+    front.store[N_ROWS], front.store[N_MADE], front.store[MAKING] = 1.0, 0.0, 1.0
+    put_pair(front, 0, -1, -1)
+
+
+@kernel
+def cut_nodes(a, i, b, j, front, k):
+    """Put the parts of the longer of two nodes in a row's place; whether there is room."""
+    n = int(front.store[N_ROWS])
+    if n >= front.most:
+        return False
+    ra, rb = node_ints(a, i), node_ints(b, j)
+    leaf_a, leaf_b = a.own[ra + 2], b.own[rb + 2]
+    if leaf_b >= 0 or (leaf_a < 0 and node_reach(a, i) >= node_reach(b, j)):
+        put_pair(front, k, -1 - a.own[ra], -1 - j)
+        put_pair(front, n, -1 - a.own[ra + 1], -1 - j)
+    else:
+        put_pair(front, k, -1 - i, -1 - b.own[rb])
+        put_pair(front, n, -1 - i, -1 - b.own[rb + 1])
+    front.store[N_ROWS] = n + 1
+    return True
+
+
+@kernel
+def look_at_nodes(a, b, front, k, radius, best, counts):
+    """Let a pair of nodes rest, or cut it; whether what is in its place is to be looked at."""
+    o, r = CONTACT_REALS * k, front.rows
+    i, j = -1 - int(r[o + C_A]), -1 - int(r[o + C_B])
+    counts[NODE_PAIRS] += 1
+    gap = gap_of(a, i, b, j) - best[ROUNDING]
+    free = max(gap - best[ABOVE], normals_shut_for(a, i, b, j, gap, radius))
+    if free > 0.0:
+        r[o + C_REST] = front.store[GONE] + free
+        return False
+    leaf_a, leaf_b = a.own[node_ints(a, i) + 2], b.own[node_ints(b, j) + 2]
+    if leaf_a >= 0 and leaf_b >= 0:
+        put_pair(front, k, leaf_a, leaf_b)
+        return True
+    if evaluations(counts) > best[BUDGET] or not cut_nodes(a, i, b, j, front, k):
+        best[LOST] += 1.0
+        return False
+    return True
+
+
+@kernel
+def go_on(pa, pb, front, k, best, counts):
+    """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d): from
+    where it came to before, else from where the leaves are nearest moved apart."""
+    o, r = CONTACT_REALS * k, front.rows
+    told = r[o + C_TOLD]
+    q = (r[o + C_AT], r[o + C_AT + 1], r[o + C_AT + 2], r[o + C_AT + 3])
+    if told == CAME:
+        found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
+        if found:
+            put_four(r, o + C_AT, q)
+            return True, q, n, d
+    start = nearest_moved_apart(pa, pb, middles_of(pa, pb) if told != CAME_TO_NONE else q, counts)
+    found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
+    r[o + C_TOLD] = CAME if found else CAME_TO_NONE
+    put_four(r, o + C_AT, q if found else start)
+    return found, q, n, d
+
+
+@kernel
+def put_four(r, o, q):
+    for i in range(4):
+        r[o + i] = q[i]
+
+
+@kernel
+def look_at_leaves(both, front, k, turn, best, minima, counts):
+    """Keep the common normal of a pair of leaves, or let it rest."""
+    o, r = CONTACT_REALS * k, front.rows
+    counts[LEAF_PAIRS] += 1
+    leaves = int(r[o + C_A]), int(r[o + C_B])
+    pa = S.Part(both.a, leaves[0], leaf_box(both.a, leaves[0]))
+    pb = S.Part(both.b, leaves[1], leaf_box(both.b, leaves[1]))
+    free = rests_for(pa, pb, turn, best)
+    if free > 0.0:
+        r[o + C_REST] = front.store[GONE] + free
+        return
+    if evaluations(counts) > best[BUDGET]:
+        best[LOST] += 1.0
+        return
+    found, q, n, d = go_on(pa, pb, front, k, best, counts)
+    if found:
+        spot = q, n, d
+        keep_signed(both.a, both.b, both.fans, leaves, spot, best[ABOVE], best, minima)
+    else:
+        r[o + C_REST] = front.store[GONE]
+
+
+@kernel
+def is_near(side, leaf, other, x, reach):
+    """Is a leaf of the same feature as another one, or as near as `reach` to a point?"""
+    r, s = leaf_ints(side, leaf), leaf_ints(side, other)
+    if side.own[r + S.FEATURE] == side.own[s + S.FEATURE]:
+        return True
+    ball = ball_round(S.Part(side, leaf, leaf_box(side, leaf)))
+    return norm(sub(ball[0], x)) <= ball[1] + reach
+
+
+@kernel
+def wake_ended(both, front, reach):
+    """A branch that has ended may go on in another pair of leaves: those in which Newton's method
+    came to no common normal are looked at again where they are of its features, or near it."""
+    r, rows = front.branches, front.rows
+    for i in range(int(front.store[N_BRANCHES])):
+        b = BRANCH_REALS * i
+        if r[b + B_TAKEN] != 0.0:
+            continue
+        x, y = read_vector(r, b + B_POINTS), read_vector(r, b + B_POINTS + 3)
+        leaves = int(r[b + B_LEAVES]), int(r[b + B_LEAVES + 1])
+        for k in range(int(front.store[N_ROWS])):
+            o = CONTACT_REALS * k
+            if rows[o + C_TOLD] != CAME_TO_NONE or rows[o + C_REST] > front.store[GONE]:
+                continue
+            if is_near(both.a, int(rows[o + C_A]), leaves[0], x, reach) and is_near(
+                both.b, int(rows[o + C_B]), leaves[1], y, reach
+            ):
+                rows[o + C_REST] = -inf
+
+
+@kernel
+def is_to_be_looked_at(front, k):
+    """Does a row not rest, in this frame?"""
+    o, r = CONTACT_REALS * k, front.rows
+    if r[o + C_REST] > front.store[GONE]:
+        return False
+    if r[o + C_TOLD] != CAME_TO_NONE or r[o + C_REST] == -inf:
+        return True
+    return (int(front.store[FRAME]) + k) % RETRIED_IN == 0
+
+
+@kernel
+def keep_ends(both, front, best, minima, counts):
+    """Keep the ends of edges' leaves under faces, of all pairs of leaves that do not rest."""
+    for k in range(int(front.store[N_ROWS])):
+        o, r = CONTACT_REALS * k, front.rows
+        if r[o + C_A] >= 0.0 and r[o + C_REST] <= front.store[GONE]:
+            keep_end(both, (int(r[o + C_A]), int(r[o + C_B])), best, minima, counts)
+
+
+@shared
+def find_contacts(both, front, radius, best, minima, counts):
+    """Keep the common normals up to best[ABOVE] on both sides of 0, and what the branches come to
+    at any depth. What there is no room or time for counts as lost. `radius`: of B, length, by which
+    its turns count as motion."""
+    store = front.store
+    best[N_MINIMA], best[LOST] = 0.0, 0.0
+    store[FRAME] += 1.0
+    grown = store[MAKING] == 0.0 and store[N_ROWS] > GROWN * store[N_MADE] + GROWN_BY
+    if store[N_ROWS] == 0.0 or grown:
+        make_rows(front)
+    follow_signed(both.a, both.b, both.fans, front, inf, best, minima, counts)
+    wake_ended(both, front, best[ABOVE])
+    k = 0
+    while k < int(store[N_ROWS]):
+        o = CONTACT_REALS * k
+        if not is_to_be_looked_at(front, k):
+            k += 1
+        elif front.rows[o + C_A] >= 0.0:
+            look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
+            k += 1
+        elif not look_at_nodes(both.a, both.b, front, k, radius, best, counts):
+            k += 1
+    if is_pressed(best, minima):
+        keep_ends(both, front, best, minima, counts)
+    if store[MAKING] > 0.0 and best[LOST] == 0.0:
+        store[N_MADE], store[MAKING] = store[N_ROWS], 0.0

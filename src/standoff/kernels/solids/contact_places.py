@@ -1,0 +1,309 @@
+"""The places of a contact from frame to frame, and the spots at which they push, in A's frame.
+
+A place is a local minimum of the signed distance; it has a number. It is *felt* where its signed
+distance has come from above 0 without a jump. In a frame two boundaries can only begin to overlap
+as deep as they have moved; a place that is born deeper than that, and than any that is felt along
+much the same normal, is another way out of a region that is felt already, and pushes nothing.
+
+Spots are what is pressed around the places that are felt: each has a spring of its own.
+"""
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+from standoff.kernels.algebra.rigid import read_vector
+from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
+from standoff.kernels.compiler.decorators import ahead, kernel
+from standoff.kernels.solids.contact_ends import is_straight
+from standoff.kernels.solids.contact_front import CONTACT_REALS, RETRIED_IN
+from standoff.kernels.solids.contact_search import is_face
+from standoff.kernels.solids.contact_sets import gather_signed
+from standoff.kernels.solids.front_branches import (
+    BRANCH_REALS,
+    branch_reach,
+    number_sets,
+    renew_branches,
+)
+from standoff.kernels.solids.front_motion import put_three
+from standoff.kernels.solids.front_rows import FRAME, N_MERGED, STORE_REALS, Front
+from standoff.kernels.solids.minima_sets import (
+    SET_BRANCH,
+    SET_REALS,
+    SET_ROW,
+    points_of,
+)
+from standoff.kernels.solids.patch import normal_of
+from standoff.kernels.solids.spatial_progress import (
+    LOST,
+    MINIMUM_REALS,
+    N_MINIMA,
+    POINTS,
+    SIZE,
+    TOLERANCE,
+)
+from standoff.kernels.solids.spatial_tolerances import ALIKE, FELT_SPARE, ONE_PLACE
+
+# What a place holds: its number; 1 where it is felt; signed distance, normal, and both points.
+P_KEY, P_FELT, P_DISTANCE, P_NORMAL, P_A, P_B = 0, 1, 2, 3, 6, 9
+PLACE_REALS = 12
+MOST_PLACES = 64
+# What a spot holds: where it is, its normal, its depth, its share of a spring, and how many springs
+# there are along its normal.
+S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS = 0, 3, 6, 7, 8
+SPOT_REALS = 9
+MOST_SPOTS = 96
+MOST_ROWS = 4096
+# Springs that all spots along one normal are worth: those of a square's corners.
+MOST_SPRINGS = 4.0
+# What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
+# whether there was no room or time for some; how many that were felt ended in this frame without
+# coming to 0; how many spots; what B moved in each of the last frames, in turn; then the store of
+# the front, its branches, the places, the spots, and its rows with how long they rest.
+F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS, F_STEPS = 0, 1, 13, 14, 15, 16, 17
+F_STORE = F_STEPS + RETRIED_IN
+F_BRANCHES = F_STORE + STORE_REALS
+F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
+F_SPOT = F_AT + PLACE_REALS * MOST_PLACES
+F_ROWS = F_SPOT + SPOT_REALS * MOST_SPOTS
+KEPT_REALS = F_ROWS + CONTACT_REALS * MOST_ROWS
+
+
+class Asked(NamedTuple):
+    """Of a frame, lengths: what B has moved in it and the last ones, at most, in which a place that
+    is found now was not looked for; how deep a place may be that is felt in a frame without one
+    before; and within which distance spots share a spring."""
+
+    step: Any
+    deepest: Any
+    span: Any
+
+
+@kernel
+def kept_front(kept, merged):
+    """The front in a block of what is kept of a pair."""
+    rows = ahead(kept, F_ROWS)
+    return Front(ahead(kept, F_STORE), rows, rows, MOST_ROWS, ahead(kept, F_BRANCHES), merged)
+
+
+@kernel
+def moved_lately(kept, step):
+    """What B has moved in the last frames, with a step of this one, length."""
+    front, total = ahead(kept, F_STORE), 0.0
+    kept[F_STEPS + int(front[FRAME]) % RETRIED_IN] = step
+    for k in range(RETRIED_IN):
+        total += kept[F_STEPS + k]
+    return total
+
+
+@kernel
+def place_at(k):
+    return F_AT + PLACE_REALS * k
+
+
+@kernel
+def middle_of_pair(rows, o):
+    return scale(0.5, add(read_vector(rows, o), read_vector(rows, o + 3)))
+
+
+@kernel
+def goes_on(kept, p, minima, o, d, reach, step):
+    """May a pair of points, whose signed distance is d, go on from a place of the frame before: as
+    near as `reach` to it and as deep, or no deeper than it along much the same normal? Where flat
+    parts touch a place goes as far as they reach while they hardly turn, and another one begins."""
+    at = place_at(p)
+    if dot(read_vector(kept, at + P_NORMAL), normal_of(minima, o)) >= ALIKE:
+        return d >= kept[at + P_DISTANCE] - step
+    off = norm(sub(middle_of_pair(kept, at + P_A), middle_of_pair(minima, o + POINTS)))
+    return off <= reach and abs(kept[at + P_DISTANCE] - d) <= step
+
+
+@kernel
+def was_felt(kept, minima, o, d, reach, step):
+    """Does a pair of points go on from a place that was felt?"""
+    for p in range(int(kept[F_PLACES])):
+        if kept[place_at(p) + P_FELT] > 0.0 and goes_on(kept, p, minima, o, d, reach, step):
+            return True
+    return False
+
+
+@kernel
+def jump_of(asked, size):
+    """By how much the signed distance of a place may change in a frame, length."""
+    return 2.0 * asked.step + FELT_SPARE * size
+
+
+@kernel
+def is_felt(kept, minima, o, d, asked, size):
+    """Is a minimum of the signed distance felt, by the places of the frame before?"""
+    if kept[F_MADE] == 0.0:
+        return d >= -asked.deepest
+    step = jump_of(asked, size)
+    if d >= -step:
+        return True
+    return was_felt(kept, minima, o, d, branch_reach(size, asked.step), step)
+
+
+@kernel
+def ended_deep(minima, sets, n, felt, kept, asked, size):
+    """How many places that were felt have ended without coming to 0, and without one that is felt,
+    as deep as they were, in their stead."""
+    step, reach, count = jump_of(asked, size), branch_reach(size, asked.step), 0
+    for p in range(int(kept[F_PLACES])):
+        o = place_at(p)
+        if kept[o + P_FELT] == 0.0 or kept[o + P_DISTANCE] >= -step:
+            continue
+        ended = True
+        for k in range(n):
+            d = sets[SET_REALS * k]
+            row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
+            deep = felt[k] > 0.0 and d <= kept[o + P_DISTANCE] + step
+            # deeper is as good, so that its own depth is what is asked
+            if deep and goes_on(kept, p, minima, row, kept[o + P_DISTANCE], reach, step):
+                ended = False
+        count += 1 if ended else 0
+    return count
+
+
+@kernel
+def put_place(minima, sets, k, felt, kept):
+    s, o = SET_REALS * k, place_at(k)
+    row = MINIMUM_REALS * int(sets[s + SET_ROW])
+    kept[o + P_KEY], kept[o + P_FELT], kept[o + P_DISTANCE] = sets[s + SET_BRANCH], felt, sets[s]
+    put_three(kept, o + P_NORMAL, normal_of(minima, row))
+    x, y = points_of(minima, row)
+    put_three(kept, o + P_A, x)
+    put_three(kept, o + P_B, y)
+
+
+@kernel
+def spot_at(k):
+    return F_SPOT + SPOT_REALS * k
+
+
+@kernel
+def is_of_a_place(kept, minima, o, tie):
+    """Does a common normal belong to a place that is felt: much the same, and no deeper?"""
+    n = normal_of(minima, o)
+    for p in range(int(kept[F_PLACES])):
+        at = place_at(p)
+        alike = dot(read_vector(kept, at + P_NORMAL), n) >= ALIKE
+        if kept[at + P_FELT] > 0.0 and alike and minima[o] >= kept[at + P_DISTANCE] - tie:
+            return True
+    return False
+
+
+@kernel
+def keep_spot(best, minima, o, kept):
+    """Keep a common normal as a spot, once."""
+    x, n, count = middle_of_pair(minima, o + POINTS), normal_of(minima, o), int(kept[F_SPOTS])
+    for k in range(count):
+        at = spot_at(k)
+        same = dot(read_vector(kept, at + S_NORMAL), n) >= ALIKE
+        if same and norm(sub(read_vector(kept, at), x)) <= ONE_PLACE * best[SIZE]:
+            kept[at + S_DEPTH] = max(kept[at + S_DEPTH], -minima[o])
+            return
+    if count == MOST_SPOTS:
+        best[LOST] += 1.0
+        return
+    at = spot_at(count)
+    put_three(kept, at, x)
+    put_three(kept, at + S_NORMAL, n)
+    kept[at + S_DEPTH] = -minima[o]
+    kept[F_SPOTS] += 1.0
+
+
+@kernel
+def is_of_a_line(both, leaves):
+    """Is a common normal of two faces, or of a face and a straight edge? Where they are level it is
+    anywhere on a line of them, whose ends tell more."""
+    faces = is_face(both.a, leaves[0]), is_face(both.b, leaves[1])
+    if faces[0] and faces[1]:
+        return True
+    if faces[0]:
+        return is_straight(both.b, leaves[1])
+    return faces[1] and is_straight(both.a, leaves[0])
+
+
+@kernel
+def put_spots(both, best, minima, sets, kept):
+    """The spots of all places that are felt: the places themselves, and common normals at vertices
+    and at edges that cross or are curved."""
+    kept[F_SPOTS] = 0.0
+    for k in range(int(kept[F_PLACES])):
+        if kept[place_at(k) + P_FELT] > 0.0 and kept[place_at(k) + P_DISTANCE] < 0.0:
+            row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
+            keep_spot(best, minima, row, kept)
+    for i in range(int(best[N_MINIMA])):
+        o = MINIMUM_REALS * i
+        leaves = int(minima[o + 1]), int(minima[o + 2])
+        if minima[o] >= 0.0 or is_of_a_line(both, leaves):
+            continue
+        if is_of_a_place(kept, minima, o, best[TOLERANCE]):
+            keep_spot(best, minima, o, kept)
+
+
+@kernel
+def force_of(kept, at):
+    return kept[at + S_DEPTH] * sqrt(kept[at + S_DEPTH])
+
+
+@kernel
+def nearness(kept, at, other, span):
+    """1 where two spots are one, 0 where they are `span` apart, or their normals across."""
+    off = norm(sub(read_vector(kept, at), read_vector(kept, other))) / span
+    left = max(1.0 - off * off, 0.0)
+    return likeness(kept, at, other) * left * left
+
+
+@kernel
+def likeness(kept, at, other):
+    n, m = read_vector(kept, at + S_NORMAL), read_vector(kept, other + S_NORMAL)
+    return max(dot(n, m), 0.0)
+
+
+@kernel
+def share_springs(kept, span):
+    """Each spot has a whole spring, but for what others have that are nearer than `span`, and all
+    along one normal have `MOST_SPRINGS` at most: so the force does not depend on how many spots
+    were found, nor does it jump where two come together, or where one begins or ends."""
+    count = int(kept[F_SPOTS])
+    for i in range(count):
+        at, total = spot_at(i), 0.0
+        for j in range(count):
+            total += nearness(kept, at, spot_at(j), span) * force_of(kept, spot_at(j))
+        kept[at + S_SHARE] = force_of(kept, at) / total
+    for i in range(count):
+        at, springs = spot_at(i), 0.0
+        for j in range(count):
+            other = spot_at(j)
+            part = min(1.0, force_of(kept, other) / force_of(kept, at))
+            springs += likeness(kept, at, other) * kept[other + S_SHARE] * part
+        kept[at + S_SPRINGS] = springs
+    for i in range(count):
+        at = spot_at(i)
+        kept[at + S_SHARE] *= min(1.0, MOST_SPRINGS / kept[at + S_SPRINGS])
+
+
+@kernel
+def tell_places(both, front, asked, best, minima, sets, kept):
+    """The places of a frame and their spots into what is kept, of the common normals that were
+    found."""
+    n = gather_signed(both.a, both.b, best, minima, 0.0, sets)
+    if n < 0 or n > MOST_PLACES:
+        best[LOST] += 1.0
+        n = min(max(n, 0), MOST_PLACES)
+    front.store[N_MERGED] = 0.0
+    number_sets(front, minima, sets, n, branch_reach(best[SIZE], asked.step), 0)
+    renew_branches(front, minima, sets, n)
+    felt = ahead(sets, SET_REALS * n)  # behind them there is room
+    for k in range(n):
+        row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
+        known = is_felt(kept, minima, row, sets[SET_REALS * k], asked, best[SIZE])
+        felt[k] = 1.0 if known else 0.0
+    kept[F_ENDED] = ended_deep(minima, sets, n, felt, kept, asked, best[SIZE])
+    for k in range(n):
+        put_place(minima, sets, k, felt[k], kept)
+    kept[F_PLACES], kept[F_MADE] = n, 1.0
+    put_spots(both, best, minima, sets, kept)
+    share_springs(kept, asked.span)
+    kept[F_LOST] = best[LOST]
