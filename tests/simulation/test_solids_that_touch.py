@@ -49,20 +49,6 @@ def at(height: float, x: float = 0.0) -> so.Pose:
     return so.Pose(np.eye(3), [x, 0.0, height])
 
 
-def places(state: SystemState) -> list[dict[str, Any]]:
-    """What the only pair of a state has kept of its places."""
-    kept = state.data[state_length(state.system) :]
-    rows = kept[P.F_AT :]
-    return [
-        {
-            "felt": bool(rows[o + P.P_FELT]),
-            "distance": float(rows[o + P.P_DISTANCE]),
-            "normal": rows[o + P.P_NORMAL : o + P.P_NORMAL + 3],
-        }
-        for o in (P.PLACE_REALS * k for k in range(int(kept[P.F_PLACES])))
-    ]
-
-
 def test_a_ball_bounces_and_rolls_as_convex_bodies_do() -> None:
     """Over the sides of its faces too, where a place goes on in another chart."""
     start = {"pose": at(0.11), "twist": so.Twist([0.2, 0.0, 0.0], [0.0, 0.0, 0.0])}
@@ -181,16 +167,16 @@ def test_another_way_out_pushes_nothing() -> None:
     off = so.Pose(np.eye(3), [5e-4, 5e-4, 0.02002])
     operator = pressed(hole, own, law, 5e-5, density=7800.0, pose=off, gravity=(0.0, 0.0, -1.0))
     run = run_of(operator, 400)
-    seen = places(run.final)
-    aside = [p for p in seen if abs(p["normal"][2]) < 0.1 and p["distance"] < 0.0]
-    assert [p["felt"] for p in aside] == [False]
-    assert aside[0]["distance"] < -5e-4
+    seen = run.final.contact(0).places
+    aside = [p for p in seen if abs(p.normal[2]) < 0.1 and p.distance < 0.0]
+    assert [p.felt for p in aside] == [False]
+    assert aside[0].distance < -5e-4
     pushed = run.forces[:, 0]
     assert pushed[:, 2].max() > 0.1
     assert np.abs(pushed[:, :2]).max() < 0.02 * pushed[:, 2].max()
     # from nothing nobody can tell
     anew = SystemState(operator.system, run.states[-1].copy())
-    felt = [p["felt"] for p in places(operator.run(anew, 1).final)]
+    felt = [p.felt for p in operator.run(anew, 1).final.contact(0).places]
     assert all(felt)
     assert len(felt) == len(seen)
 
@@ -199,13 +185,13 @@ def test_a_place_is_felt_that_is_as_deep_as_the_bodies_have_moved() -> None:
     operator = pressed(Solid(PLATE), Solid(BALL), pose=at(0.12), gravity=(0.0, 0.0, 0.0))
     near = operator.run(operator.start(), 1).final
     moved = operator.run(moved_to(operator, near, 0.0995), 1)
-    assert [p["felt"] for p in places(moved.final)] == [True]
+    assert [p.felt for p in moved.final.contact(0).places] == [True]
 
 
 def test_a_place_that_ends_deep_is_counted() -> None:
     operator = pressed(Solid(PLATE), Solid(BALL), pose=at(0.1001), gravity=(0.0, 0.0, -5.0))
     state = operator.run(operator.start(), 60, 60).final
-    assert places(state)[0]["distance"] < -1e-6
+    assert state.contact(0).places[0].distance < -1e-6
     data = moved_to(operator, state, 0.2).data.copy()  # nothing is near there
     data[state_length(operator.system) + P.F_POSE + 11] = 0.2  # as if B had not moved
     data.flags.writeable = False
@@ -247,3 +233,35 @@ def test_what_solids_do_not_have(given: dict[str, Any], match: str) -> None:
 def test_a_half_space_has_no_contact_with_a_solid() -> None:
     with pytest.raises(StandoffError, match="box or a plate"):
         pressed(so.shapes.halfspace(), Solid(BALL), pose=at(0.2))
+
+
+def test_the_spots_of_a_state_are_its_force() -> None:
+    operator = in_its_hole()
+    run = run_of(operator, 1000)
+    contact = run.final.contact(0)
+    assert contact.complete
+    law, total = operator.system.contacts[0], np.zeros(3)
+    moving = run.final.twist(1)
+    for spot in contact.spots:
+        arm = spot.point - run.final.pose(1).translation
+        velocity = moving.v + np.cross(moving.omega, arm)
+        closing = -velocity @ spot.normal
+        spring = spot.springs * law.stiffness * spot.depth**1.5
+        push = max(0.0, spring * (1.0 + 1.5 * law.damping * closing))
+        slip = velocity + closing * spot.normal
+        grip = law.friction * push / np.hypot(np.linalg.norm(slip), law.slip_speed)
+        total += push * spot.normal - grip * slip
+    np.testing.assert_allclose(total, run.forces[-1, 0], rtol=1e-9)
+    deepest = min(place.distance for place in contact.places if place.felt)
+    assert deepest == run.distances[-1, 0]
+    assert sum(spot.springs for spot in contact.spots) <= 8.0
+
+
+def test_who_has_no_places_says_so() -> None:
+    operator = in_its_hole()
+    for state in (operator.start(), run_of(operator, 2).state(1)):
+        with pytest.raises(StandoffError, match="no places of contact"):
+            state.contact(0)
+    convex = pressed(PLATE, BALL, pose=at(0.2))
+    with pytest.raises(StandoffError, match="of convex bodies"):
+        convex.start().contact(0)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from standoff.simulation.passivity_observer import PassivityController, PortEnergy
     from standoff.simulation.rigid_body import RigidBody
     from standoff.simulation.simulated_device import Mechanism, ScriptedHand, SimulatedDevice
+    from standoff.simulation.solid_places import ContactPlace, ContactSpot, SolidContact
     from standoff.simulation.system import System
     from standoff.simulation.system_run import SystemRun
     from standoff.simulation.system_state import Energy, SystemState
@@ -73,6 +74,11 @@ else:
                 "ScriptedHand",
                 "SimulatedDevice",
             ),
+            "standoff.simulation.solid_places": (
+                "ContactPlace",
+                "ContactSpot",
+                "SolidContact",
+            ),
             "standoff.simulation.system": ("System",),
             "standoff.simulation.system_run": ("SystemRun",),
             "standoff.simulation.system_state": ("Energy", "SystemState"),
@@ -81,6 +87,8 @@ else:
     )
 
 __all__ = [
+    "ContactPlace",
+    "ContactSpot",
     "CouplerCounts",
     "CouplerRun",
     "CouplerState",
@@ -105,6 +113,7 @@ __all__ = [
     "Sampling",
     "ScriptedHand",
     "SimulatedDevice",
+    "SolidContact",
     "Solution",
     "System",
     "SystemEvent",

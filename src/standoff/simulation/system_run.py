@@ -119,19 +119,18 @@ class SystemRun(KeepsReadOnly):
 
     @property
     def deepest(self) -> float:
-        """The greatest depth of any pair since the start, length; 0 where none touched."""
-        return float(self.states[-1, K.S_DEEPEST])
+        """As of the last state: `SystemState.deepest`."""
+        return self.final.deepest
 
     @property
     def uncertified(self) -> int:
-        """How many answers of the trackers since the start were not certified."""
-        return int(self.states[-1, K.S_UNCERTIFIED])
+        """As of the last state: `SystemState.uncertified`."""
+        return self.final.uncertified
 
     @property
     def jumps(self) -> int:
-        """How many places of contact of solids have ended since the start while they were pressed,
-        without another one in their stead: their force ended with them."""
-        return int(self.states[-1, K.S_JUMPS])
+        """As of the last state: `SystemState.jumps`."""
+        return self.final.jumps
 
     def _touches(self) -> Array:
         shape = (len(self.accounts), len(self.system.pairs), K.N_TOUCH)

@@ -16,6 +16,8 @@ from standoff.read_only import KeepsReadOnly
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.coupler_state import CouplerState, packed_state, unpacked_state
 from standoff.simulation.rigid_body import FREE
+from standoff.simulation.solid_parts import kept_length
+from standoff.simulation.solid_places import SolidContact, solid_contact
 from standoff.simulation.system import System
 
 Array = NDArray[np.float64]
@@ -88,6 +90,42 @@ class SystemState(KeepsReadOnly):
     def distance(self, pair: int) -> float:
         """Return the signed distance of a pair."""
         return float(distances(self.system, self.data[None])[0, pair])
+
+    def contact(self, pair: int) -> SolidContact:
+        """Return the places at which a pair with a solid touches, and what pushes there.
+
+        Raises
+        ------
+        StandoffError
+            A pair of convex bodies; a state that keeps no places: one of a record, or a start.
+        """
+        if not self.system.of_solids[pair]:
+            raise StandoffError(
+                f"Pair {pair} is of convex bodies, which touch at their witness points: ask "
+                "run.forces, run.spots and run.witness_points.",
+                "pair",
+                pair,
+            )
+        number = sum(self.system.of_solids[:pair])
+        at = state_length(self.system) + kept_length(number)
+        kept = self.data[at : at + kept_length(1)]
+        return solid_contact(kept, self.pose(self.system.pairs[pair][0]))
+
+    @property
+    def deepest(self) -> float:
+        """The greatest depth of any pair since the start, length; 0 where none touched."""
+        return float(self.data[K.S_DEEPEST])
+
+    @property
+    def uncertified(self) -> int:
+        """How many answers of the trackers since the start were not certified."""
+        return int(self.data[K.S_UNCERTIFIED])
+
+    @property
+    def jumps(self) -> int:
+        """How many places of contact of solids have ended since the start while they were pressed,
+        without another one in their stead: their force ended with them."""
+        return int(self.data[K.S_JUMPS])
 
     @property
     def coupler(self) -> CouplerState | None:
