@@ -198,7 +198,7 @@ def check_body(body: object) -> None:
         asked = hasattr(body, "cold_query")
         way = (
             "this takes convex bodies alone; so.distance and so.World ask solids and compounds, "
-            "and so.Tracker keeps two solids in space"
+            "so.Tracker keeps two solids in space, and so.simulation moves them"
             if asked
             else "make one with so.shapes or Body.from_brep"
         )
