@@ -1,0 +1,55 @@
+"""The soak of solids that fall on each other: what it judges, and that a planted fault is seen."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from standoff.solids import distance
+from standoff.tracking.status import Status
+from standoff_studies.soak.solid_contacts import (
+    LOOKED_FOR,
+    STRETCH,
+    compared,
+    falling,
+    judged,
+    judged_fall,
+)
+from standoff_studies.soak.solid_pairs import made
+
+
+def test_a_fall_is_judged() -> None:
+    verdict, lines = judged_fall(0, 1, [("plate", "pin")], 600)
+    assert lines == []
+    assert verdict.sound
+    assert verdict.ticks >= 200
+    assert verdict.sampled == verdict.ticks // STRETCH
+    assert verdict.overlaps > 0
+    assert verdict.lost == verdict.jumps == verdict.uncertified == 0
+    assert "0 wrong" in str(verdict)
+
+
+def test_planted_faults_are_seen(rng: np.random.Generator) -> None:
+    a, b = (made(name)[1] for name in ("plate", "brick"))
+    operator = falling(a, b, rng)
+    below = LOOKED_FOR * operator.system.depth(0)
+    state = operator.start()
+    for _ in range(100):
+        state = operator.run(state, 5, 5).final
+        if state.contact(0).spots:
+            break
+    contact = state.contact(0)
+    cold = distance(a, b, state.pose(0), state.pose(1), minima=below)
+    assert cold.status is Status.OVERLAPPING
+    assert judged(a, b, state, below) == compared(contact, cold, below, 1e-9)
+    sound, lines = compared(contact, cold, below, 1e-9)
+    assert (sound.wrong, sound.lost, lines) == (0, 0, [])
+    silent = contact._replace(spots=())
+    assert compared(silent, cold, below, 1e-9)[0].wrong == 1
+    # where it is told that some were not looked for, nobody is misled
+    assert compared(silent._replace(complete=False), cold, below, 1e-9)[0].wrong == 0
+    missed = contact._replace(places=())
+    assert compared(missed, cold, below, 1e-9)[0].lost == sound.minima > 0
+    elsewhere = replace(cold, minima=(cold.minima[0]._replace(distance=-0.5 * below),))
+    assert compared(contact, elsewhere, below, 1e-9)[0].lost == 1
