@@ -208,7 +208,7 @@ duration = 0.5
 
 
 def test_a_simulation_moves_solids(command: Command) -> None:
-    """The ring falls on the pin, which stands in it, and rests on a plate."""
+    """A ring falls on a plate, and rests on it."""
     text = """version = 1
 [bodies.ring]
 body = "ring.json"
@@ -233,12 +233,15 @@ every = 10
     code, told = command(text, "simulate", "--json")
     assert code == 0, told
     found = json.loads(told)
-    assert found["uncertified"] == 0
+    assert found["uncertified"] == found["ended_deep"] == 0
     assert 0.0 < found["deepest"] < 0.05
     height = found["bodies"]["ring"]["position"][2]
     assert -0.05 < height < 0.0
     weight = 9.81 * np.pi * (1.5**2 - 1.0)
     assert found["pairs"]["ring-plate"]["greatest_force"] > weight
+    told = command(text, "simulate")[1]
+    assert "all places looked for; 0 places ended deep" in told
+    assert "certified" not in told
 
 
 def test_what_takes_convex_bodies_alone_says_so(command: Command, folder: Path) -> None:

@@ -112,6 +112,7 @@ def _facts(scene: SimulationScene, run: SystemRun) -> dict[str, Any]:
         "balance_drift": float(np.abs(energy.balance - energy.balance[0]).max()),
         "deepest": run.deepest,
         "uncertified": run.uncertified,
+        "ended_deep": run.jumps,
     }
 
 
@@ -182,7 +183,7 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
         lines += _coupler_lines(_coupler_facts(scene, run.coupler), unit)
     lines += _energy_lines(run, unit)
     lines.append(line("deepest", f"{run.deepest + 0.0:.6g} {unit.length}"))
-    lines.append(line("certified", _certified_text(run.uncertified)))
+    lines += _certified_lines(run)
     return [*lines, *(line("wrote", str(path)) for path in written)]
 
 
@@ -196,8 +197,17 @@ def _energy_lines(run: SystemRun, unit: _Units) -> list[str]:
     return [line("energy", told), line("", f"its balance drifted by {drift:.3g} {unit.energy}")]
 
 
-def _certified_text(uncertified: int) -> str:
-    return "all distances" if uncertified == 0 else f"all distances but {uncertified}"
+def _certified_lines(run: SystemRun) -> list[str]:
+    """Of pairs of solids no distance is, but whether all places were looked for."""
+    solid = sum(run.system.of_solids)
+    but = "" if run.uncertified == 0 else f" but {run.uncertified}"
+    if not solid:
+        return [line("certified", f"all distances{but}")]
+    ended = counted(run.jumps, "place")
+    lines = [line("solids", f"all places looked for{but}; {ended} ended deep")]
+    if solid < len(run.system.pairs):
+        lines.insert(0, line("certified", f"all distances of convex pairs{but}"))
+    return lines
 
 
 def _coupler_lines(facts: dict[str, Any], unit: _Units) -> list[str]:
