@@ -60,6 +60,7 @@ FAST = (
 TOGETHER = (
     "paper/test_broken_on_purpose.py",
     "paper/test_claims.py",
+    "paper/test_resets.py",
     "paper/test_simulation_a.py",
     "paper/test_simulation_b.py",
     "paper/test_simulation_c.py",

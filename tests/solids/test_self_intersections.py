@@ -132,6 +132,7 @@ def test_turned_neighbours_that_cross_in_a_circle() -> None:
         assert (across, place.point_a[2]) == pytest.approx((0.86, 0.98), abs=1e-9)
 
 
+@pytest.mark.soak
 def test_a_turned_profile_with_a_loop() -> None:
     pull = 0.5
     share = 0.4 / (0.4 + 3.0 * pull)

@@ -8,7 +8,7 @@ import pytest
 from draws import draws
 from families.tracked_motions import run_tracked, tracked_families
 
-POSES = draws(120)
+POSES = draws(80)
 SHOWN = 5
 """Failures printed of each family."""
 
