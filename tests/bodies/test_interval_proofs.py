@@ -16,7 +16,7 @@ PI = np.pi
 SQUARE = (-1, 1, -1, 1)
 
 
-def least_curvature(surface, sense, n=60, sides=False):
+def least_curvature(surface, sense, n=40, sides=False):
     """The least normal curvature on a grid, outward positive, and the jets' points and normals."""
     u0, u1, v0, v1 = surface.domain
     inner = np.linspace(0, 1, n) if sides else (np.arange(n) + 0.5) / n
