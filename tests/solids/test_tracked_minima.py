@@ -250,7 +250,7 @@ def test_many_minima_are_all_told_from_the_start_on() -> None:
     a, b = drawn(60, rng), drawn(60, rng)
     turn, shift = posed(a, b, 0.1, rng)
     pose = placed(turn, shift)
-    below = so.solids.distance(a, b, STILL, pose).distance + 0.25
+    below = so.solids.distance(a, b, STILL, pose).distance + 0.4
     cold = so.solids.distance(a, b, STILL, pose, minima=below)
     tracker = so.Tracker(a, b, minima=below)
     state = tracker.start(STILL, pose)
