@@ -41,7 +41,7 @@ def assert_same(body, plain):
     assert body.size == pytest.approx(plain.size, rel=1e-14)
 
 
-@pytest.mark.parametrize(("spacing", "name"), share(4, SPACINGS, SHELLS))
+@pytest.mark.parametrize(("spacing", "name"), share(6, SPACINGS, SHELLS))
 def test_knots_along_u_and_v_of_all_patches_change_no_feature(name, spacing):
     patches = [refined(patch, spacing, "uv") for patch in SHELLS[name]()]
     assert_same(so.Body.from_patches(patches), coarse(name))

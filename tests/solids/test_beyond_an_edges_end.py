@@ -55,7 +55,7 @@ def cut_short(boundary, gap: float, which: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("outline", "first", "gap"), share(2, [NOTCHED, STAR, SKEW], range(8), [0.0, 1e-10])
+    ("outline", "first", "gap"), share(3, [NOTCHED, STAR, SKEW], range(8), [0.0, 1e-10])
 )
 @given(st.floats(-2.0, 3.0), st.integers(-2, 2), st.integers(0, 2**64 - 1))
 def test_beyond_its_end_an_edge_tells_nothing(outline, first, gap, t, roundings, which):
