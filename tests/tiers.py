@@ -71,7 +71,7 @@ TOGETHER = (
 
 LONG = (
     *TOGETHER,
-    "c_interface/test_c_interface.py",  # where the C library has to be built
+    "c_interface/test_c_interface.py",
     "test_docs.py",
     "soak/test_soak_command.py",
     "solids/test_rounded_beside_solids.py",

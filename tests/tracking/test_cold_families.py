@@ -8,14 +8,12 @@ import pytest
 from draws import draws
 from families.cold_queries import run_family
 from families.pairs import FAMILIES
-from shares import only
 
 SHOWN = 5
 """Failures printed of each family."""
 
 
-# Every other family; the others are tracked in every run (`test_tracked_families`).
-@pytest.mark.parametrize("name", only(list(FAMILIES)[::2], FAMILIES))
+@pytest.mark.parametrize("name", FAMILIES)
 def test_no_answer_is_wrong(name, rng):
     seed = int(rng.integers(1 << 31))
     poses = draws(FAMILIES[name].poses)
