@@ -63,6 +63,7 @@ RIGHT_ANGLES = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]}
 WINDING = {"rate": 1.0, "phase": 0.1, "orientation": "fixed"}
 AXES = [1.0, 2.0, 3.0]
 LOOP = [Line([0, 0], [1, 0]), Line([1, 0], [0, 1]), Line([0, 1], [0, 0])]
+TRIANGLE = so.shapes.planar_loop(LOOP)
 
 SHAPES: dict[str, dict[str, Any]] = {
     "box": {"size": AXES, "rounding": 0.1},
@@ -383,7 +384,7 @@ SIMULATION: dict[str, dict[str, Any]] = {
         "duration": 1e-3,
         "method": "RK23",
         "tolerance": 1e-3,
-        "max_step": 1e-3,
+        "max_step": 0.1,  # a duration may be replaced by 1 s
         "allow_overlap": False,
     },
     "Operator": {
@@ -515,7 +516,10 @@ def pair_calls() -> list[Call]:
         ),
         "track": (so, {"tracker": so.Tracker(SPHERE, BOX, 1e-3), **along}),
         "time_of_impact": (so, {**moved, "start": 0.0, "tolerance": 1e-9, "clearance": 0.0}),
-        "voronoi_regions": (so, {"body": DISC, "reach": 1.0, "tolerance": 1e-6}),
+        "voronoi_regions": (
+            so,
+            {"body": so.shapes.planar_loop(LOOP), "reach": 1.0, "tolerance": 1e-6},
+        ),
         "witness_set": (
             so,
             {"proximity": so.distance(*posed.values()), "pose_a": HOME, "pose_b": AWAY},

@@ -6,6 +6,7 @@ from math import isnan, nan
 import numpy as np
 import pytest
 
+from shares import only
 from standoff.tracking import Status
 from standoff_studies.accuracy.cases import Case, pairs
 from standoff_studies.accuracy.measuring import (
@@ -183,7 +184,7 @@ def some_cases(cases_of, rng: np.random.Generator) -> list[Case]:
     return [case for pair in chosen for case in cases_of(pair[0].name, pair[1].name)]
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("part", only([0, 1], range(4)))
 def test_gaps_reach_the_targets(part, cases_of, rng: np.random.Generator) -> None:
     """Distance 1e-12 and witness points 1e-9; the normal 1e-9 but where roundoff turns it."""
     for case in some_cases(cases_of, rng):
@@ -200,7 +201,7 @@ def test_gaps_reach_the_targets(part, cases_of, rng: np.random.Generator) -> Non
         assert normal <= max(TARGETS[2], ROUNDOFF / stiffness), told
 
 
-@pytest.mark.parametrize("part", range(4))
+@pytest.mark.parametrize("part", only([0, 1], range(4)))
 def test_depths_reach_the_targets(part, cases_of, rng: np.random.Generator) -> None:
     """Up to half the focal depth: the least depth, as accurate as gaps, and no false bound."""
     for case in some_cases(cases_of, rng):

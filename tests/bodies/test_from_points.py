@@ -14,6 +14,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from shares import share
 from standoff.bodies.hulls.heights import highest
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
@@ -199,8 +200,8 @@ def test_distances_are_those_of_a_quadratic_program(
     other = rng.normal(size=(60, 3)) * [0.3, 0.5, 0.2]
     a, b = so.Body.from_points(points), so.Body.from_points(other)
     reach = float(np.linalg.norm(points, axis=1).max() + np.linalg.norm(other, axis=1).max())
-    for share in (1.01, 1.3, 4.0):
-        pose = apart(rng, share * reach)
+    for factor in (1.01, 1.3, 4.0):
+        pose = apart(rng, factor * reach)
         answer = so.distance(a, b, so.Pose.identity(), pose)
         low, high = between(points, other @ pose.rotation.T + pose.translation)
         assert high - low <= 1e-11 * reach  # else the program is no judge
@@ -270,8 +271,7 @@ def test_a_body_of_fewer_facets_tracks(rng: np.random.Generator) -> None:
         assert answer.distance == pytest.approx(cold.distance, abs=1e-9)
 
 
-@pytest.mark.parametrize("tolerance", [None, 1e-2])
-@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(("mirrored", "tolerance"), share(2, [False, True], [None, 1e-2]))
 def test_images_are_the_hulls_of_the_images(
     mirrored: bool, tolerance: float | None, rng: np.random.Generator
 ) -> None:

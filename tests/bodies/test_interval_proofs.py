@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy
 
+from shares import only
 from standoff.bodies.proofs.formulas import forms, signs, symbolic
 from standoff.bodies.proofs.formulas.normals import least_cosines
 from standoff.bodies.proofs.formulas.signs import proven_sign
@@ -15,7 +16,7 @@ PI = np.pi
 SQUARE = (-1, 1, -1, 1)
 
 
-def least_curvature(surface, sense, n=60, sides=False):
+def least_curvature(surface, sense, n=40, sides=False):
     """The least normal curvature on a grid, outward positive, and the jets' points and normals."""
     u0, u1, v0, v1 = surface.domain
     inner = np.linspace(0, 1, n) if sides else (np.arange(n) + 0.5) / n
@@ -160,7 +161,7 @@ def test_patches_that_bend_inward_are_refused_with_the_place(name):
     assert least_curvature(there, proof.sense, 1)[0] == pytest.approx(proof.curvature, rel=0.08)
 
 
-@pytest.mark.parametrize("depth", [1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("depth", only([1e-12, 1e-6, 1e-2], [1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2]))
 def test_grooves_are_graded(depth):
     """z = -d (u^4 - u^2/2) - v^2/2 dents by d/16 below its hull."""
     surface = FormulaSurface("u", "v", "-16*d*(u**4 - u**2/2) - v**2/2", SQUARE, {"d": depth})

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from draws import draws
+from shares import share
 from standoff.bodies.proofs import prove_patch
 from standoff.geometry import (
     BezierPatch,
@@ -210,8 +212,9 @@ def test_a_bowl_is_convex_to_the_other_side_only():
     assert hollow.defect >= rise(bowl, 1)
 
 
-@pytest.mark.parametrize("depth", [1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2])
-@pytest.mark.parametrize("rational", [False, True])
+@pytest.mark.parametrize(
+    ("rational", "depth"), share(2, [False, True], [1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2])
+)
 def test_dents_are_graded_and_never_bounded_too_low(depth, rational, rng):
     """A control point of a flat patch pushed in: the dent's depth is known at its middle."""
     p, q = (int(k) for k in rng.integers(2, 10, 2))
@@ -235,7 +238,7 @@ def test_dents_are_graded_and_never_bounded_too_low(depth, rational, rng):
 
 def test_random_patches_are_never_called_convex_when_they_are_dented(rng):
     outcomes = set()
-    for _ in range(60):
+    for _ in range(draws(60)):
         degrees = tuple(int(k) for k in rng.integers(2, 8, 2))
         patch = bump(rng, degrees, least=10.0 ** rng.uniform(-4.0, 0.0))
         points = patch.control_points.copy()

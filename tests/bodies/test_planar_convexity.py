@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import standoff as so
+from shares import share
 from standoff.geometry import ConicArc, FormulaCurve, Line, NurbsCurve
 
 LOWER_HALF = ConicArc([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], np.pi, 2.0 * np.pi)
@@ -20,8 +21,7 @@ def lid(height: float, width: float) -> NurbsCurve:
     return NurbsCurve(np.column_stack([x, y, np.zeros(len(x))]), knots)
 
 
-@pytest.mark.parametrize("height", [1e-2, -1e-2, 1e-4])
-@pytest.mark.parametrize("width", [1e-3, 1e-2, 0.1])
+@pytest.mark.parametrize(("width", "height"), share(3, [1e-3, 1e-2, 0.1], [1e-2, -1e-2, 1e-4]))
 def test_a_narrow_bump_or_dent_is_refused(height: float, width: float) -> None:
     with pytest.raises(so.BodyError, match="Not convex"):
         so.shapes.planar_loop([lid(height, width), LOWER_HALF])

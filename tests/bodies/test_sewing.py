@@ -8,6 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from draws import draws
 from families import patch_shells as shells
 from standoff.geometry import (
     ConicArc,
@@ -27,7 +28,7 @@ PARTNERS = (
     so.shapes.box(0.6, 0.9, 0.4),
     so.shapes.lens(0.8, 0.3),
 )
-POSES = 60
+POSES = draws(60)
 """Random poses a body; each partner in turn."""
 
 
@@ -290,12 +291,12 @@ def test_flipped_patches_are_turned_and_reported(wrong):
 
 
 def test_order_and_place_of_patches_do_not_matter(rng):
-    for _ in range(6):
+    for k in range(draws(6)):
         turn = Rotation.random(random_state=rng).as_matrix()
         linear = 10.0 ** rng.uniform(-2, 2) * turn @ np.diag(rng.uniform(0.4, 1.5, 3))
         shift = rng.normal(size=3)
         tiles = [*shells.cube_sphere(2), *ellipsoid_octants(1, 1, 1)]
-        chosen = tiles[:24] if rng.random() < 0.5 else tiles[24:]
+        chosen = tiles[:24] if k % 2 else tiles[24:]
         patches = [chosen[k].transformed(linear, shift) for k in rng.permutation(len(chosen))]
         body = so.Body.from_patches(patches)
         report = body.check()
@@ -353,6 +354,6 @@ def test_a_tracker_crosses_the_seams():
 
 
 def test_many_patches():
-    body = so.Body.from_patches(shells.cube_sphere(6, AXES))
-    assert_closed(body, 216)
+    body = so.Body.from_patches(shells.cube_sphere(4, AXES))
+    assert_closed(body, 96)
     assert_same_answers(body, ELLIPSOID, poses=12)

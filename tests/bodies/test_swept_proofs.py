@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shares import share
 from standoff.bodies.proofs import prove_patch
 from standoff.geometry import ConicArc, FormulaCurve, Line, RationalBezier
 from standoff.geometry.nurbs_curves import NurbsCurve
@@ -31,8 +32,7 @@ REVOLVED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("turn", [1.0, 2 * PI])
-@pytest.mark.parametrize("name", REVOLVED)
+@pytest.mark.parametrize(("name", "turn"), share(2, REVOLVED, [2 * PI, 1.0]))
 def test_surfaces_of_revolution(name, turn):
     profile, convex = REVOLVED[name]
     linear = np.array([[1, 0.2, 0], [0, 1.5, 0.1], [0.3, 0, -0.8]])

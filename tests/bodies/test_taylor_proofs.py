@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy
 
+from shares import only
 from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.formulas import forms, normals
 from standoff.bodies.proofs.formulas.poles import poles_of
@@ -163,7 +164,10 @@ def test_collapsed_sides_without_exact_algebra(formulas, domain, sense):
 
 
 @pytest.mark.usefixtures("_without_algebra")
-@pytest.mark.parametrize("height", ["cos(v) - cos(v)**4", "cos(v) - exp(-30*sin(v)**2)/50"])
+@pytest.mark.parametrize(
+    "height",
+    only(["cos(v) - cos(v)**4"], ["cos(v) - cos(v)**4", "cos(v) - exp(-30*sin(v)**2)/50"]),
+)
 def test_pressed_poles_without_exact_algebra(height):
     surface = FormulaSurface("sin(v)*cos(u)", "sin(v)*sin(u)", height, (0, 2, 0, HALF))
     proof = interval.prove(surface)
@@ -178,7 +182,7 @@ def test_pressed_poles_without_exact_algebra(height):
     assert proof.curvature == pytest.approx(least, rel=0.5)
 
 
-@pytest.mark.parametrize("depth", [1e-9, 1e-3, 0.03])
+@pytest.mark.parametrize("depth", only([1e-3, 0.03], [1e-9, 1e-3, 0.03]))
 def test_waves_whose_sines_are_strangers_to_the_algebra(depth):
     """r = sin v + d sin 7v: that sin 7v vanishes with sin v is not an identity of polynomials."""
     r = "(sin(v) + d*sin(7*v))"
@@ -206,7 +210,10 @@ def sum_patch(dent):
     return FormulaSurface(*rows, (-1, 1, -1, 1))
 
 
-@pytest.mark.parametrize(("dent", "convex"), [("0.001", True), ("0.2", False)])
+@pytest.mark.parametrize(
+    ("dent", "convex"),
+    [("0.001", True), pytest.param("0.2", False, marks=pytest.mark.soak)],
+)
 def test_sums_of_ellipsoids(dent, convex):
     surface = sum_patch(dent)
     assert not forms.curvature_forms(surface.formula).exact

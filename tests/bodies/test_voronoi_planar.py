@@ -5,6 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
+from shares import only
 from standoff.geometry import ConicArc, Curve, Line, RationalBezier
 
 Array = NDArray[np.float64]
@@ -68,7 +69,7 @@ def test_a_regular_hexagon_has_one_junction_of_all_edges() -> None:
     assert all(len(end.features) == 6 for end in ends)
 
 
-@pytest.mark.parametrize("first", [0.0, 0.3])
+@pytest.mark.parametrize("first", only([0.3], [0.0, 0.3]))
 def test_an_ellipse_has_the_segment_between_two_focal_centres(first: float) -> None:
     """Semi-axes a > b: from -(a - b²/a) to +(a - b²/a) on the major axis, depth b²/a there."""
     a, b = 2.0, 1.0
@@ -197,7 +198,7 @@ def test_edges_may_run_either_way() -> None:
     assert np.allclose(rays[2, 1], (0.8, 0.6, 0))
 
 
-@pytest.mark.parametrize("turn", [1e-3, 2e-5, 1e-6])
+@pytest.mark.parametrize("turn", only([2e-5, 1e-6], [1e-3, 2e-5, 1e-6]))
 def test_a_flat_corner_has_its_branch_or_counts_as_smooth(turn: float) -> None:
     """A corner that turns by less than 1e-5 rad is passed; the checks hold either way."""
     body = polygon([(0, 0), (1.5, -0.75 * turn), (3, 0), (3, 2), (0, 2)])
@@ -207,7 +208,7 @@ def test_a_flat_corner_has_its_branch_or_counts_as_smooth(turn: float) -> None:
     assert so.voronoi.BranchEnd(kind, (so.Feature("vertex", 1),)) in ends
 
 
-@pytest.mark.parametrize("scale", [1e-6, 1e6])
+@pytest.mark.parametrize("scale", only([1e-6], [1e-6, 1e6]))
 def test_the_axis_goes_with_the_body(planar_body: so.Body, scale: float) -> None:
     """A hundred sizes off the origin, at any scale: the same axis."""
     moved = planar_body.transformed((scale * np.eye(3), scale * np.array([100.0, -50.0, 0.0])))

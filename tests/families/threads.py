@@ -48,4 +48,4 @@ def beside() -> list[tuple[float, float]]:
 
 @cache
 def flanks() -> tuple[Solid, Solid]:
-    return bar(FLANK, 0.0, 1.6, 8), bar(beside(), -0.2, 1.4, 8)
+    return bar(FLANK, 0.0, 1.0, 5), bar(beside(), -0.2, 0.8, 5)

@@ -13,6 +13,7 @@ from patches import KINDS, ORIGIN, affine, part, sampled
 
 import standoff.geometry as g
 from draws import draws
+from shares import share
 from standoff.errors import StandoffError
 from standoff.geometry.intervals import Interval
 from standoff.geometry.patch_bounds import (
@@ -60,8 +61,7 @@ def test_every_class_of_surface_is_here() -> None:
     assert {type(kind.make(np.random.default_rng(0))) for kind in KINDS.values()} == every
 
 
-@pytest.mark.parametrize("width", [1.0, 0.2, 1e-2, 1e-5])
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize(("name", "width"), share(2, KINDS, [1.0, 0.2, 1e-2, 1e-5]))
 @settings(max_examples=draws(10))
 @given(SEEDS)
 def test_they_hold_every_sample(name: str, width: float, seed: int) -> None:
@@ -107,7 +107,7 @@ def test_they_sharpen_as_rectangles_halve(name: str) -> None:
     """A box with the square of the width, cones and curvatures with the width: a cone is then some
     percent wider than its normals, as its axis is nearly that of the least."""
     steps, angles = [], []
-    for seed in range(draws(12)):
+    for seed in range(draws(8)):
         rng = np.random.default_rng(seed)
         surface = KINDS[name].make(rng).transformed(*affine(rng, similar=True))
         if name in ("pole chart", "side chart"):  # away from the coordinate planes
@@ -130,7 +130,7 @@ def test_they_sharpen_as_rectangles_halve(name: str) -> None:
 
 @pytest.mark.parametrize("name", KINDS)
 def test_small_ones_are_tight(name: str) -> None:
-    for seed in range(draws(10)):
+    for seed in range(draws(6)):
         surface, rectangle = drawn(name, seed, 1e-4)
         box, cone, curvature = excess(surface.bounds(rectangle), surface, rectangle)
         angle = surface.bounds(rectangle).angle[0]

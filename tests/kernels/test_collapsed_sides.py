@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
+from draws import draws
 from standoff.kernels.body import layout as L
 from standoff_studies.paper.bodies import lens_of_patches
 
@@ -44,7 +45,7 @@ def held(body: so.Body, pose: so.Pose, kind: str, index: int, place: tuple[float
 @pytest.mark.parametrize("name", ["lens of patches", "lens of patches, moved"])
 def test_bounds_hold_where_a_witness_is_held_beside_the_tip(name: str) -> None:
     body = BODIES[name]
-    for x in around(body, 25):
+    for x in around(body, draws(25)):
         pose = so.Pose(np.eye(3), x)
         true = so.distance(body, POINT, REST, pose).distance
         for v in (w for s in BESIDE for w in (s, 1.0 - s)):

@@ -27,7 +27,7 @@ SHAPES = (
     so.shapes.box((1.5, 1.5, 0.05)),
     so.shapes.polytope(np.array([[0.3, 0, 0], [0.4, 0, 0], [0.3, 0.1, 0], [0.3, 0, 0.1]])),
 )
-N = 40
+N = 24
 
 
 def system(rng: np.random.Generator, all_pairs: bool) -> sim.System:

@@ -22,6 +22,7 @@ from typing import Any
 import pytest
 from numba.core import config
 
+from shares import only
 from standoff.kernels.compiler import machine, modules, notices, shipped, trust
 from standoff.kernels.compiler.trust import others_can_write
 from standoff.kernels.entries import queries, shipping
@@ -221,14 +222,14 @@ def test_code_that_needs_what_the_processor_lacks_is_refused(ask, folder):
 
 
 @with_v3
-@pytest.mark.parametrize("name", ["skylake-avx512", "znver4"])
+@pytest.mark.parametrize("name", only(["znver4"], ["skylake-avx512", "znver4"]))
 def test_a_processor_that_has_all_that_is_needed_uses_the_code(use, name):
     told, said = use(NUMBA_CPU_NAME=name)
     assert (told["compiled"], said) == (0, "")
 
 
 @with_v3
-@pytest.mark.parametrize("name", ["nehalem", "ivybridge"])
+@pytest.mark.parametrize("name", only(["ivybridge"], ["nehalem", "ivybridge"]))
 def test_a_processor_that_lacks_something_compiles(use, name):
     why = f"x86-64-v3, and NUMBA_CPU_NAME={name} is not known to have avx"
     is_refused(use(NUMBA_CPU_NAME=name, NUMBA_CPU_FEATURES=""), why)

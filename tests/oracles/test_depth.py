@@ -160,7 +160,7 @@ SHAPES = {
 def test_against_a_dense_sample(name, rng):
     """No direction of a dense sample has a lesser s, and the points are the bodies' own."""
     dense, _ = sphere(6)
-    for other in SHAPES.values():
+    for other in list(SHAPES.values())[list(SHAPES).index(name) :]:
         pair = exact_pair(SHAPES[name], other, -float(rng.uniform(0.01, 0.3)), rng)
         found = depth_minima(pair.a, pair.b)
         least = -separation_many(pair.a, pair.b, dense).max()

@@ -9,6 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff_studies.oracles
+from draws import draws
 from oracles import closed_forms
 from oracles.bounds import gap, maximise_separation, overlap, separation
 from oracles.brute import _proves, nearest_points, nearest_polytopes
@@ -252,7 +253,7 @@ CLOSED = {
 def test_closed_forms_against_separation(name):
     shape, rng = SOLIDS[name], np.random.default_rng(15)
     body = placed(shape)
-    for _ in range(60):
+    for _ in range(draws(60)):
         n = random_normal(rng)
         point = shape.support(n)[1] + n * np.exp(rng.uniform(-7, 1)) + 0.3 * random_normal(rng)
         if overlap(body, placed(Point(), position=point)):
@@ -305,9 +306,15 @@ def test_half_space():
     assert overlap(placed(HalfSpace()), plane)
 
 
-@pytest.mark.parametrize(
-    ("name_a", "name_b"), list(combinations_with_replacement(sorted(SOLIDS), 2))
-)
+def pairs_of(names):
+    """Each with itself and, in every run, with every other of the others."""
+    return [
+        pytest.param(a, b, marks=[pytest.mark.soak] if (i + j) % 2 else [])
+        for (i, a), (j, b) in combinations_with_replacement(enumerate(sorted(names)), 2)
+    ]
+
+
+@pytest.mark.parametrize(("name_a", "name_b"), pairs_of(SOLIDS))
 def test_exact_pairs_are_exact(name_a, name_b):
     a, b = SOLIDS[name_a], SOLIDS[name_b]
     rng = np.random.default_rng(17)
@@ -355,9 +362,7 @@ def test_overlap_and_depth():
             assert overlap(pair.a, pair.b)
 
 
-@pytest.mark.parametrize(
-    ("name_a", "name_b"), list(combinations_with_replacement(sorted(SYSTEMS), 2))
-)
+@pytest.mark.parametrize(("name_a", "name_b"), pairs_of(SYSTEMS))
 def test_nearest_points_are_proven_and_agree(name_a, name_b):
     a, b = SYSTEMS[name_a], SYSTEMS[name_b]
     size = size_of(a, b)

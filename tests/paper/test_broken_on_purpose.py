@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from shares import only
 from standoff.tracking import Tracker
 from standoff_studies.paper import pair_simulation
 from standoff_studies.paper.broken_on_purpose import BREAKS, FIGURES, Break, Noticed, noticed
@@ -76,10 +77,11 @@ def test_every_claim_is_tried_in_every_run() -> None:
     assert all({*KEPT[one.key]} <= one.claimed_by for one in BREAKS)
 
 
-def test_nothing_is_noticed_where_nothing_is_broken() -> None:
+@pytest.mark.parametrize("figure", only(["18"], ["18", "20"]))
+def test_nothing_is_noticed_where_nothing_is_broken(figure: str) -> None:
     """The matrix by itself breaks nothing, nor does it leave anything broken behind."""
     times = [one.SIMULATION.paper.time for one in (d, e)]
-    for row in noticed(Break("none", "the law as it is"), ("18", "20"), trials=False):
+    for row in noticed(Break("none", "the law as it is"), (figure,), trials=False):
         assert row == Noticed(row.key)
     for one, time in zip((d, e), times, strict=True):
         assert one.SIMULATION.paper.time is time

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -105,6 +106,16 @@ def test_the_device_and_the_law_are_those_that_are_told() -> None:
     assert one.system.bodies[1].body.radius == BALL
 
 
+@pytest.fixture
+def one_gain(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Each takes seconds; `test_low_gains_suffice` runs them all."""
+    monkeypatch.setattr(statements, "GAINS", statements.GAINS[:1])
+    statements.by_gain.cache_clear()
+    yield
+    statements.by_gain.cache_clear()
+
+
+@pytest.mark.usefixtures("one_gain")
 def test_the_figure_is_made() -> None:
     (entry,) = chosen(["5"])
     made = make(entry)

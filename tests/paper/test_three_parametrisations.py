@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import standoff as so
+from shares import share
 from standoff.motion import Fixed, Pose, Twist
 from standoff.recording.times import even_times
 from standoff.recording.track import track_along
@@ -58,8 +59,7 @@ def apart(start: str, solve: str, integrator: str, h: float) -> float:
     )
 
 
-@pytest.mark.parametrize("integrator", list(ORDER))
-@pytest.mark.parametrize("start", list(STARTS))
+@pytest.mark.parametrize(("start", "integrator"), share(2, STARTS, ORDER))
 def test_the_covariant_law_has_one_path(start: str, integrator: str) -> None:
     """Half the step leaves a half of the difference by Euler's method, a quarter by Heun's."""
     coarse, fine = (apart(start, "covariant", integrator, h) for h in (2e-3, 1e-3))
@@ -67,8 +67,7 @@ def test_the_covariant_law_has_one_path(start: str, integrator: str) -> None:
     assert coarse / fine > 0.9 * 2.0 ** ORDER[integrator]
 
 
-@pytest.mark.parametrize("integrator", list(ORDER))
-@pytest.mark.parametrize("start", list(STARTS))
+@pytest.mark.parametrize(("start", "integrator"), share(2, STARTS, ORDER))
 def test_the_printed_law_has_another_in_each(start: str, integrator: str) -> None:
     """The difference stays, however small the step."""
     coarse, fine = (apart(start, "plain", integrator, h) for h in (2e-3, 1e-3))

@@ -12,6 +12,7 @@ import pytest
 from moving_pairs import REST, random_pairs, straight
 
 import standoff as so
+from shares import share
 from standoff.geometry import Line
 from standoff.motion import ConstantTwist, Fixed
 from standoff.recording.track import track_along
@@ -24,8 +25,10 @@ OFF = REST, so.Pose(np.eye(3), (2.0, 0.0, 0.0))
 THROUGH = straight((-1.0, 0.1, 0.2), (1.0, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("law", [so.PredictorCorrector(), so.PaperLaw()], ids=repr)
-@pytest.mark.parametrize("number", [0, 3, 6, 7])
+LAWS = so.PredictorCorrector(), so.PaperLaw()
+
+
+@pytest.mark.parametrize(("number", "law"), share(2, [0, 3, 6, 7], LAWS), ids=repr)
 def test_frames_are_the_tracker_s_own_steps(number: int, law: Any) -> None:
     a, b, path_a, path_b = random_pairs(8)[number]
     recording = so.track(so.Tracker(a, b, 2e-3, law), path_a, path_b, 0.8, start=0.25)

@@ -9,6 +9,7 @@ import standoff as so
 from robots.arms import arm
 from robots.path_oracle import Judged, drawn_judged, least_distances
 from robots.trees import robot_of
+from shares import only
 from standoff.robots.proof import BoxProof, Verdict
 
 ORACLE = 1e-11
@@ -41,7 +42,7 @@ def count_in(boxes: object, q: np.ndarray) -> np.ndarray:
     return found
 
 
-@pytest.mark.parametrize("joints", range(2, 8))
+@pytest.mark.parametrize("joints", only([2, 3, 7], range(2, 8)))
 def test_boxes_of_two_to_seven_joints(joints: int) -> None:
     rng = np.random.default_rng(joints)
     verdicts = set()

@@ -23,6 +23,7 @@ from scenes_with_coupler import (
 )
 
 import standoff as so
+from shares import share
 from standoff import simulation as sim
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.motion import Fixed
@@ -199,11 +200,11 @@ def total(run: sim.SystemRun) -> Any:
     return run.energy.mechanical + found.stored - given
 
 
-@pytest.mark.parametrize("tracker", ["beside", "inside"])
-@pytest.mark.parametrize("contact", [CONTACT, SPRINGLESS])
-@pytest.mark.parametrize("ticks", [1, 5])
+@pytest.mark.parametrize(
+    ("ticks", "contact", "tracker"), share(2, [1, 5], [CONTACT, SPRINGLESS], ["beside", "inside"])
+)
 def test_energy_never_grows_in_contact_with_a_passive_coupler(
-    tracker: str, contact: sim.HuntCrossley, ticks: int
+    ticks: int, contact: sim.HuntCrossley, tracker: str
 ) -> None:
     run = dragged(coupled(tracker=tracker, contact=contact, ticks=ticks), READINGS)
     assert run.spots[:, 0].any()

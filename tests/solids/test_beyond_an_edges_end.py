@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from families.solid_shapes import prism
+from shares import share
 from standoff.bodies.face_leaves import face_charts
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
@@ -53,9 +54,9 @@ def cut_short(boundary, gap: float, which: int) -> np.ndarray:
     return reals
 
 
-@pytest.mark.parametrize("gap", [0.0, 1e-10])
-@pytest.mark.parametrize("first", range(8))
-@pytest.mark.parametrize("outline", [NOTCHED, STAR, SKEW])
+@pytest.mark.parametrize(
+    ("outline", "first", "gap"), share(3, [NOTCHED, STAR, SKEW], range(8), [0.0, 1e-10])
+)
 @given(st.floats(-2.0, 3.0), st.integers(-2, 2), st.integers(0, 2**64 - 1))
 def test_beyond_its_end_an_edge_tells_nothing(outline, first, gap, t, roundings, which):
     # the first edge is the first that is looked at

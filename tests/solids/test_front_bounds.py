@@ -11,7 +11,9 @@ from numba import njit
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from draws import draws
 from families.solid_shapes import bolt, bracket, egg, peg, ring, tube
+from shares import share
 from standoff.kernels.algebra.rigid import unit_quaternion
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.entries.solids import STILL as STILL_POSE
@@ -104,8 +106,7 @@ def part_points(solid: Solid, which: float, box: Array) -> Array:
     return np.concatenate(whole)
 
 
-@pytest.mark.parametrize("way", [*motions(), "towards"])
-@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize(("name", "way"), share(2, PAIRS, [*motions(), "towards"]))
 def test_no_pair_of_pieces_is_nearer_than_its_bound(name: str, way: str) -> None:
     a, b = PAIRS[name]
     rng = np.random.default_rng(len(name) + len(way))
@@ -304,7 +305,7 @@ def test_no_motion_that_is_told_brings_a_part_over_a_plane() -> None:
     rng, goal, tight = np.random.default_rng(8), 0.3, 0
     planes = [k for k, leaf in enumerate(a.leaves) if leaf.dim == 2]
     parts = [k for k, leaf in enumerate(b.leaves) if leaf.dim]
-    for _ in range(400):
+    for _ in range(draws(400)):
         turn, shift = Rotation.random(random_state=rng).as_matrix(), 2.0 * rng.normal(size=3)
         one, other = int(rng.choice(planes)), int(rng.choice(parts))
         pose = np.concatenate([turn.ravel(), shift])

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numba import njit
 
+from draws import draws
 from families.solid_shapes import bolt, prism, tube
 from families.threads import flanks
 from standoff.kernels.compiler.decorators import pointer
@@ -32,7 +33,7 @@ SOLIDS = {
     "thread": lambda: flanks()[0],
 }
 ACROSS = 24
-DRAWS = 400
+DRAWS = draws(400)
 
 
 @njit

@@ -135,7 +135,7 @@ def test_where_there_are_many_screws_or_none_no_one_is_taken(rng) -> None:
 def answers() -> tuple:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tree, "put_screws", lambda leaves, charts: None)
-        without = bar(FLANK, 0.0, 1.6, 8), bar(beside(), -0.2, 1.4, 8)
+        without = bar(FLANK, 0.0, 1.0, 5), bar(beside(), -0.2, 0.8, 5)
     return distance(*flanks(), STILL, STILL), distance(*without, STILL, STILL)
 
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from draws import draws
 from families import crossing_solids as made
 from families.solid_shapes import egg
+from shares import only
 from standoff.bodies import Boundary
 from standoff.errors import StandoffError
 from standoff.geometry import Plane
@@ -41,7 +42,7 @@ def faces(found: SelfIntersections) -> set[tuple[int, int]]:
     return {(p.feature_a.index, p.feature_b.index) for p in found.crossings}
 
 
-@pytest.mark.parametrize("past", [1e-6, 1e-3, 0.2])
+@pytest.mark.parametrize("past", only([1e-6, 0.2], [1e-6, 1e-3, 0.2]))
 def test_a_pocket_deeper_than_its_box(past: float) -> None:
     found = crossings(made.pocket(1.0 + past))
     assert faces(found) == {(0, k) for k in (7, 8, 9, 10)}
@@ -109,7 +110,7 @@ def test_a_bent_tube_whose_ends_pass_each_other() -> None:
     assert not Solid(made.looped_tube(0.3)).self_intersections.places
 
 
-@pytest.mark.parametrize("dent", [1.52, 3.0])
+@pytest.mark.parametrize("dent", only([1.52], [1.52, 3.0]))
 def test_neighbours_that_cross_away_from_their_common_edge(dent: float) -> None:
     found = crossings(made.dented_wedge(dent))
     assert faces(found) == {(0, 1)}
@@ -120,7 +121,7 @@ def test_neighbours_that_cross_away_from_their_common_edge(dent: float) -> None:
     assert 1e-4 < found.crossings[0].depth < 1.0
 
 
-@pytest.mark.parametrize("spare", [1e-3, 1e-6])
+@pytest.mark.parametrize("spare", only([1e-6], [1e-3, 1e-6]))
 def test_neighbours_that_nearly_touch(spare: float) -> None:
     assert not Solid(made.dented_wedge(1.5 - spare)).self_intersections.places
 
@@ -132,6 +133,7 @@ def test_turned_neighbours_that_cross_in_a_circle() -> None:
         assert (across, place.point_a[2]) == pytest.approx((0.86, 0.98), abs=1e-9)
 
 
+@pytest.mark.soak
 def test_a_turned_profile_with_a_loop() -> None:
     pull = 0.5
     share = 0.4 / (0.4 + 3.0 * pull)
@@ -168,7 +170,8 @@ def test_no_bolt_meets_itself(shank: float, wider: float, under: float, head: fl
     assert Solid(boundary).self_intersections.none_outside_joints
 
 
-@pytest.mark.parametrize("wall", [pytest.param(1e-3, marks=pytest.mark.soak), 1e-6])
+@pytest.mark.soak
+@pytest.mark.parametrize("wall", [1e-3, 1e-6])
 def test_no_thin_pipe_meets_itself(wall: float) -> None:
     assert not Solid(elbow(0.5, 0.2, 0.2 + wall, 0.3).boundary).self_intersections.places
 

@@ -178,7 +178,7 @@ def test_no_plane_shuts_out_a_minimum_that_is_asked() -> None:
 
 
 @pytest.mark.parametrize(
-    "seed", [*range(4), *(pytest.param(k, marks=pytest.mark.soak) for k in range(4, 40))]
+    "seed", [*range(2), *(pytest.param(k, marks=pytest.mark.soak) for k in range(2, 40))]
 )
 def test_no_minimum_is_lost_in_drawn_motions(seed: int) -> None:
     """Of turned parts with many edges, whose leaves their minima pass through."""
@@ -245,12 +245,12 @@ def test_a_peg_in_its_hole_stays_in_the_compiled_loop() -> None:
 
 
 def test_many_minima_are_all_told_from_the_start_on() -> None:
-    """Two parts of 99 faces, of whose pieces thousands of pairs may hold a minimum."""
+    """Two parts of 59 faces, of whose pieces thousands of pairs may hold a minimum."""
     rng = np.random.default_rng(100)
-    a, b = drawn(100, rng), drawn(100, rng)
+    a, b = drawn(60, rng), drawn(60, rng)
     turn, shift = posed(a, b, 0.1, rng)
     pose = placed(turn, shift)
-    below = so.solids.distance(a, b, STILL, pose).distance + 0.25
+    below = so.solids.distance(a, b, STILL, pose).distance + 0.4
     cold = so.solids.distance(a, b, STILL, pose, minima=below)
     tracker = so.Tracker(a, b, minima=below)
     state = tracker.start(STILL, pose)

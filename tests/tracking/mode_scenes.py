@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -112,11 +112,17 @@ class Scene:
     def names(self) -> tuple[dict[str, Name], dict[str, Name]]:
         return names_of_body(self.body_a, self.shape_a), names_of_body(self.body_b, self.shape_b)
 
-    @cached_property
-    def truth(self) -> list[tuple[Name, Name]]:
-        """The features by brute force in every fine frame."""
+    _truth: dict[int, list[tuple[Name, Name]]] = field(default_factory=dict, compare=False)
+
+    def truth(self, stride: int) -> list[tuple[Name, Name]]:
+        """The features by brute force in every so many-th fine frame."""
+        if stride not in self._truth:
+            self._truth[stride] = self._by_force(stride)
+        return self._truth[stride]
+
+    def _by_force(self, stride: int) -> list[tuple[Name, Name]]:
         rows, warm = [], None
-        for k in range(round(self.duration / FINE) + 1):
+        for k in range(0, round(self.duration / FINE) + 1, stride):
             poses = self.path_a.pose(k * FINE), self.path_b.pose(k * FINE)
             a = Placed(self.shape_a, poses[0].rotation, poses[0].translation)
             b = Placed(self.shape_b, poses[1].rotation, poses[1].translation)

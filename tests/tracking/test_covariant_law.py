@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import standoff as so
+from shares import share
 from standoff_studies.paper.convergence import cells
 from standoff_studies.paper.simulation_e.runs import PATH_A, PATH_B, SIMULATION, pair
 
@@ -61,8 +62,7 @@ def run(tracker: so.Tracker, start: tuple[Any, Any], frames: int) -> list[so.Pro
     return answers
 
 
-@pytest.mark.parametrize("gain", [100.0, 1000.0])
-@pytest.mark.parametrize("name", VARIANTS)
+@pytest.mark.parametrize(("name", "gain"), share(2, VARIANTS, [100.0, 1000.0]))
 def test_every_start_arrives(name: str, gain: float) -> None:
     tracker = so.Tracker(*pair(), SIMULATION.step, law=law(gain, **VARIANTS[name]))
     truth = so.distance(*pair(), *POSES).distance

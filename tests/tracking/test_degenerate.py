@@ -17,6 +17,7 @@ from families.degenerate_motion import track
 from families.degenerate_queries import GLOBAL, Pose, Tally, deep, faults, judge, run, sunk
 from families.shapes import Twin
 from oracles.exact_pairs import exact_pair
+from shares import share
 from standoff_studies import oracles as oracle
 
 HOME = np.eye(4)
@@ -67,8 +68,7 @@ def test_apart(name, level, rng):
     assert tally.uncertified <= OPEN.get((name, level), 0.05) * POSES + 1
 
 
-@pytest.mark.parametrize("scale", [1e-6, 1e6])
-@pytest.mark.parametrize("name", sorted(KINDS))
+@pytest.mark.parametrize(("name", "scale"), share(2, sorted(KINDS), [1e-6, 1e6]))
 def test_sizes(name, scale, rng):
     """No length is compared with 1: bodies of a micrometre and of 1,000 km."""
     kind = KINDS[name]
@@ -226,7 +226,7 @@ MOST_IN_PENETRATION = 6000
 @pytest.mark.parametrize("predictor", ["feedforward-2", "secant"])
 def test_teleports_into_each_other(predictor, rng):
     """Apart, sunk and deep by turns, jumping by many sizes between frames."""
-    (a, b), apart = crossing(rng, 5)
+    (a, b), apart = crossing(rng, draws(5))
     poses = [pose for far in apart for pose in (far, _sunk(far, rng), deep(a, b, rng))]
     tracker = so.Tracker(a.body, b.body, law=so.PredictorCorrector(predictor=predictor))
     state = tracker.start(*poses[0].poses)

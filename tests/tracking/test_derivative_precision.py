@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from shares import share
 from standoff.tracking import Smoothness
 from standoff_studies.oracles.optima import (
     DIGITS,
@@ -122,8 +123,11 @@ def compared(first: str, second: str, gap: float, rng: np.random.Generator) -> N
         assert np.abs(got - true).max() <= 1e-6 * np.abs(true).max()
 
 
-@pytest.mark.parametrize("gap", GAPS)
-@pytest.mark.parametrize("pair", PAIRS, ids=" - ".join)
+@pytest.mark.parametrize(
+    ("pair", "gap"),
+    share(3, PAIRS, GAPS),
+    ids=lambda value: " - ".join(value) if isinstance(value, tuple) else None,
+)
 def test_derivatives_in_fifty_digits(pair, gap: float, rng: np.random.Generator) -> None:
     compared(*pair, gap, rng)
 
@@ -133,8 +137,7 @@ def test_derivatives_in_penetration(pair, rng: np.random.Generator) -> None:
     compared(*pair, -0.01, rng)
 
 
-@pytest.mark.parametrize("gap", [1.0, 1e-6, -0.01, -3.0])
-@pytest.mark.parametrize("kind", BEFORE_IT)
+@pytest.mark.parametrize(("kind", "gap"), share(2, BEFORE_IT, [1.0, 1e-6, -0.01, -3.0]))
 def test_derivatives_against_a_half_space(kind: str, gap: float, rng: np.random.Generator) -> None:
     """The half-space first and second; deeper than the body is long it is the same formula."""
     compared(HALF_SPACE, kind, gap, rng)

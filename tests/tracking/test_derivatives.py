@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from draws import draws
 from standoff.tracking import Smoothness
 
 SHAPES = so.shapes
@@ -268,7 +269,7 @@ def test_equal_depths_are_found_and_others_are_not(name: str, off: float) -> Non
 def test_depths_alone_are_those_of_one_normal(name: str, rng: np.random.Generator) -> None:
     """The flag and `witness_set`, which descends from 53 directions, agree."""
     a, b = PAIRS[name]
-    for _ in range(12):
+    for _ in range(draws(12)):
         poses = [
             moved(np.eye(4), np.r_[0.2, 0.2, 0.2, 2, 2, 2] * rng.normal(size=6), 1.0) for _ in "ab"
         ]

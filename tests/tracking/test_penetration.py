@@ -24,6 +24,7 @@ from oracles.bounds import separation
 from oracles.depth import least_depth
 from oracles.exact_pairs import exact_pair, random_rotation
 from oracles.poses import rotation_about
+from shares import share
 from standoff.geometry import Line
 from standoff_studies import oracles as oracle
 from standoff_studies.oracles import Placed, Superellipsoid
@@ -221,8 +222,7 @@ TIES = {
 }
 
 
-@pytest.mark.parametrize("tie", TIES)
-@pytest.mark.parametrize("name", SYMMETRIC)
+@pytest.mark.parametrize(("name", "tie"), share(2, SYMMETRIC, TIES))
 def test_symmetric_poses(name, tie):
     """Many minima alike, or rings of them: one of the least, though it may not be proven.
 

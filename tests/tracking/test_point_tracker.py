@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from point_oracle import clockwise, ellipse, stadium, to_boundary, to_curve, winding
 
 import standoff as so
+from shares import share
 from standoff.geometry import ConicArc, Line
 from standoff.motion import Spiral
 from standoff.points.planar_boundary import PlanarBoundary
@@ -62,8 +63,10 @@ def half_disc(height: float) -> so.Body:
     return so.shapes.planar_loop([arc, Line((-1, 0), (1, 0))])
 
 
-@pytest.mark.parametrize("law", [so.PredictorCorrector(), so.PaperLaw(gain=60.0)], ids=repr)
-@pytest.mark.parametrize("height", [0.05, 0.6, 2.0])
+LAWS = so.PredictorCorrector(), so.PaperLaw(gain=60.0)
+
+
+@pytest.mark.parametrize(("height", "law"), share(2, [0.05, 0.6, 2.0], LAWS), ids=repr)
 def test_wild_motion_is_never_wrong_in_silence(height: float, law: Any) -> None:
     """Jumps of any size, thin bodies: certified answers are right, bounds hold in any case."""
     rng = np.random.default_rng(round(100 * height))

@@ -82,7 +82,7 @@ DIMENSIONS = {
 def test_the_flag_tells_the_scene(scene, rng):
     """Witness points are unique where the scene says so, and their set holds the answer."""
     for _, gap in gaps_of(scene):
-        times = np.sort(rng.uniform(0.0, 20.0, 3))
+        times = np.sort(rng.uniform(0.0, 20.0, draws(3)))
         frames, _ = scene.motion(times, gap)
         for k in range(len(times)):
             pose = so.Pose.from_checked(frames.rotations[k], frames.positions[k])

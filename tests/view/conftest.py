@@ -84,9 +84,9 @@ class Tab:
 def tab(chromium: Any) -> Iterator[Any]:
     opened: list[Tab] = []
 
-    def make(width: int, height: int) -> Tab:
-        # A quarter of the pixels: they are drawn without a graphics card.
-        opened.append(Tab(chromium, width, height, 0.5))
+    def make(width: int, height: int, scale: float = 0.25) -> Tab:
+        # A sixteenth of the pixels: they are drawn without a graphics card.
+        opened.append(Tab(chromium, width, height, scale))
         return opened[-1]
 
     yield make

@@ -67,7 +67,7 @@ def test_a_body_inside_another_is_seen_with_the_depth(
     others = {"cam": EXAMPLES / "cam.toml"}
     with page_of(INSIDE, others=others) as page:
         page._asked.put(lambda: page.hand("nothing"))
-        desk = opened(page, tab(1280, 800))
+        desk = opened(page, tab(1280, 800, 0.5))
         assert desk.page.title() == TITLE
         assert desk.shown("verdict") == "overlap, depth 34 mm, proven least"
         assert (desk.shown("a"), desk.shown("b")) == ("face 5 of case", "vertex 0 of marble")
@@ -145,7 +145,6 @@ def test_the_phone_s_panel_is_as_wide_as_the_phone(
         assert (box["x"], box["width"]) == (0, 390)
         plot = phone.page.locator(".uplot-container").bounding_box()
         assert plot["width"] > 350
-        phone.shot("phone-inside")
         # Its camera stands farther off than a desk's, and is put there again where it was not.
         (client,) = page.server.get_clients().values()
         usual = page.server.initial_camera

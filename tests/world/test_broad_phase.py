@@ -37,7 +37,7 @@ def drawn_piece(rng: np.random.Generator, shape: so.Body) -> Piece:
 
 def test_boxes_bound_the_distance_from_below(rng: np.random.Generator) -> None:
     tight = 0
-    for _ in range(draws(400)):
+    for _ in range(draws(250)):
         a, b = (drawn_piece(rng, SHAPES[rng.integers(len(SHAPES))]) for _ in range(2))
         if rng.random() < 0.2:
             a = drawn_piece(rng, FLOOR)
@@ -50,7 +50,7 @@ def test_boxes_bound_the_distance_from_below(rng: np.random.Generator) -> None:
         true = so.distance(a.body, b.body, *((x[:9].reshape(3, 3), x[9:]) for x in at))
         assert bound <= true.upper_bound, (a, b, poses, bound, true)
         tight += bound > true.distance - 0.5 * size
-    assert tight > 100
+    assert tight > draws(125)
 
 
 def test_a_point_of_a_piece_goes_no_farther_than_its_travel(rng: np.random.Generator) -> None:
