@@ -234,7 +234,8 @@ def tell_pair(kept, best, pose_a, out):
         put(add(rotate(R, read_vector(kept, at + P_B)), p), out, POINT_B)
         put(rotate(R, read_vector(kept, at + P_NORMAL)), out, NORMAL)
         out[STATUS] = LOCAL if least < 0.0 else TRACKING
-    if kept[F_LOST] > 0.0:
+    # an overlap of which nothing is felt is no contact that is known
+    if kept[F_LOST] > 0.0 or (at < 0 and kept[F_PLACES] > 0.0):
         out[STATUS] = NOT_CERTIFIED
 
 

@@ -31,7 +31,7 @@ from standoff.simulation import (
 from standoff.solids import SolidProximity, distance
 from standoff.tracking.status import Status
 from standoff_studies.soak import blocks
-from standoff_studies.soak.solid_motions import SAME
+from standoff_studies.soak.solid_motions import SAME, STILL
 from standoff_studies.soak.solid_outlines import Array
 from standoff_studies.soak.solid_pairs import made
 from standoff_studies.soak.solid_parts import MAKERS
@@ -90,7 +90,7 @@ def falling(a: Any, b: Any, rng: np.random.Generator) -> Operator:
     size = 0.5 * (a.size + b.size)
     turn = Rotation.random(random_state=rng).as_matrix()
     far = a.ball_round()[0] + 2.0 * (a.size + b.size) * way - turn @ b.ball_round()[0]
-    near = distance(a, b, None, Pose(turn, far))
+    near = distance(a, b, STILL, Pose(turn, far))
     there = far - near.normal * (near.distance - FROM * size)
     spin = SPIN * rng.uniform(-1.0, 1.0, size=3)
     mass = mass_properties(b, 1.0)
