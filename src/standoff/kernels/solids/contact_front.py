@@ -4,7 +4,8 @@ at.
 
 A pair of nodes rests by what is proven of it. In a pair of leaves that may hold a common normal now
 Newton's method goes on in each frame from where it came to. Where it came to none it is tried again
-in one of so many frames, or where a branch ends that may go on there.
+in one of so many frames, or where a branch ends, or a common normal leaves its leaves, that may go
+on there.
 """
 
 from math import inf
@@ -26,6 +27,7 @@ from standoff.kernels.solids.front_branches import B_LEAVES, B_POINTS, B_TAKEN, 
 from standoff.kernels.solids.front_frame import GROWN, GROWN_BY
 from standoff.kernels.solids.front_rows import FRAME, GONE, MAKING, N_BRANCHES, N_MADE, N_ROWS
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
+from standoff.kernels.solids.spatial_minimum import jets_at
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_ints
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
@@ -111,6 +113,43 @@ def look_at_nodes(a, b, front, k, radius, best, counts):
 
 
 @kernel
+def is_near(side, leaf, other, x, reach):
+    """Is a leaf of the same feature as another one, or as near as `reach` to a point?"""
+    r = leaf_ints(side, leaf)
+    if other >= 0 and side.own[r + S.FEATURE] == side.own[leaf_ints(side, other) + S.FEATURE]:
+        return True
+    ball = ball_round(S.Part(side, leaf, leaf_box(side, leaf)))
+    return norm(sub(ball[0], x)) <= ball[1] + reach
+
+
+@kernel
+def wake(both, front, leaves, x, y, reach):
+    """Look again in the pairs of leaves in which Newton's method came to no common normal, where
+    they are of the features of `leaves`, -1: none, or as near as `reach` to a pair of points."""
+    rows = front.rows
+    for k in range(int(front.store[N_ROWS])):
+        o = CONTACT_REALS * k
+        if rows[o + C_TOLD] != CAME_TO_NONE or rows[o + C_REST] > front.store[GONE]:
+            continue
+        if is_near(both.a, int(rows[o + C_A]), leaves[0], x, reach) and is_near(
+            both.b, int(rows[o + C_B]), leaves[1], y, reach
+        ):
+            rows[o + C_REST] = -inf
+
+
+@kernel
+def wake_ended(both, front, reach):
+    """A branch that has ended may go on anywhere on its features."""
+    r = front.branches
+    for i in range(int(front.store[N_BRANCHES])):
+        b = BRANCH_REALS * i
+        if r[b + B_TAKEN] == 0.0:
+            leaves = int(r[b + B_LEAVES]), int(r[b + B_LEAVES + 1])
+            x, y = read_vector(r, b + B_POINTS), read_vector(r, b + B_POINTS + 3)
+            wake(both, front, leaves, x, y, reach)
+
+
+@kernel
 def go_on(pa, pb, front, k, best, counts):
     """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d): from
     where it came to before, else from where the leaves are nearest moved apart."""
@@ -137,7 +176,8 @@ def put_four(r, o, q):
 
 @kernel
 def look_at_leaves(both, front, k, turn, best, minima, counts):
-    """Keep the common normal of a pair of leaves, or let it rest."""
+    """Keep the common normal of a pair of leaves, or let it rest. One that has left them is beside
+    them."""
     o, r = CONTACT_REALS * k, front.rows
     counts[LEAF_PAIRS] += 1
     leaves = int(r[o + C_A]), int(r[o + C_B])
@@ -150,43 +190,17 @@ def look_at_leaves(both, front, k, turn, best, minima, counts):
     if evaluations(counts) > best[BUDGET]:
         best[LOST] += 1.0
         return
+    came = r[o + C_TOLD] == CAME
+    before = (r[o + C_AT], r[o + C_AT + 1], r[o + C_AT + 2], r[o + C_AT + 3])
     found, q, n, d = go_on(pa, pb, front, k, best, counts)
     if found:
         spot = q, n, d
         keep_signed(both.a, both.b, both.fans, leaves, spot, best[ABOVE], best, minima)
-    else:
-        r[o + C_REST] = front.store[GONE]
-
-
-@kernel
-def is_near(side, leaf, other, x, reach):
-    """Is a leaf of the same feature as another one, or as near as `reach` to a point?"""
-    r, s = leaf_ints(side, leaf), leaf_ints(side, other)
-    if side.own[r + S.FEATURE] == side.own[s + S.FEATURE]:
-        return True
-    ball = ball_round(S.Part(side, leaf, leaf_box(side, leaf)))
-    return norm(sub(ball[0], x)) <= ball[1] + reach
-
-
-@kernel
-def wake_ended(both, front, reach):
-    """A branch that has ended may go on in another pair of leaves: those in which Newton's method
-    came to no common normal are looked at again where they are of its features, or near it."""
-    r, rows = front.branches, front.rows
-    for i in range(int(front.store[N_BRANCHES])):
-        b = BRANCH_REALS * i
-        if r[b + B_TAKEN] != 0.0:
-            continue
-        x, y = read_vector(r, b + B_POINTS), read_vector(r, b + B_POINTS + 3)
-        leaves = int(r[b + B_LEAVES]), int(r[b + B_LEAVES + 1])
-        for k in range(int(front.store[N_ROWS])):
-            o = CONTACT_REALS * k
-            if rows[o + C_TOLD] != CAME_TO_NONE or rows[o + C_REST] > front.store[GONE]:
-                continue
-            if is_near(both.a, int(rows[o + C_A]), leaves[0], x, reach) and is_near(
-                both.b, int(rows[o + C_B]), leaves[1], y, reach
-            ):
-                rows[o + C_REST] = -inf
+        return
+    if came:
+        ja, jb = jets_at(both.a, leaves[0], both.b, leaves[1], before)
+        wake(both, front, (-1, -1), ja[0], jb[0], best[ABOVE])
+    r[o + C_REST] = front.store[GONE]
 
 
 @kernel
@@ -209,6 +223,28 @@ def keep_ends(both, front, best, minima, counts):
             keep_end(both, (int(r[o + C_A]), int(r[o + C_B])), best, minima, counts)
 
 
+@kernel
+def look_at_rows(both, front, radius, best, minima, counts):
+    k = 0
+    while k < int(front.store[N_ROWS]):
+        if not is_to_be_looked_at(front, k):
+            k += 1
+        elif front.rows[CONTACT_REALS * k + C_A] >= 0.0:
+            look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
+            k += 1
+        elif not look_at_nodes(both.a, both.b, front, k, radius, best, counts):
+            k += 1
+
+
+@kernel
+def look_at_woken(both, front, radius, best, minima, counts):
+    """Those that were woken after their turn."""
+    for k in range(int(front.store[N_ROWS])):
+        o = CONTACT_REALS * k
+        if front.rows[o + C_TOLD] == CAME_TO_NONE and front.rows[o + C_REST] == -inf:
+            look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
+
+
 @shared
 def find_contacts(both, front, radius, best, minima, counts):
     """Keep the common normals up to best[ABOVE] on both sides of 0, and what the branches come to
@@ -222,16 +258,8 @@ def find_contacts(both, front, radius, best, minima, counts):
         make_rows(front)
     follow_signed(both.a, both.b, both.fans, front, inf, best, minima, counts)
     wake_ended(both, front, best[ABOVE])
-    k = 0
-    while k < int(store[N_ROWS]):
-        o = CONTACT_REALS * k
-        if not is_to_be_looked_at(front, k):
-            k += 1
-        elif front.rows[o + C_A] >= 0.0:
-            look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
-            k += 1
-        elif not look_at_nodes(both.a, both.b, front, k, radius, best, counts):
-            k += 1
+    look_at_rows(both, front, radius, best, minima, counts)
+    look_at_woken(both, front, radius, best, minima, counts)
     if is_pressed(best, minima):
         keep_ends(both, front, best, minima, counts)
     if store[MAKING] > 0.0 and best[LOST] == 0.0:

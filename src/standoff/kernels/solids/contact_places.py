@@ -5,7 +5,8 @@ distance has come from above 0 without a jump. In a frame two boundaries can onl
 as deep as they have moved; a place that is born deeper than that, and than any that is felt along
 much the same normal, is another way out of a region that is felt already, and pushes nothing.
 
-Spots are what is pressed around the places that are felt: each has a spring of its own.
+Spots are the places that are felt, and the vertices and edges that are pressed beside them, as
+they too came from above 0: each has a spring of its own.
 """
 
 from math import sqrt
@@ -17,7 +18,7 @@ from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids.contact_ends import is_straight
 from standoff.kernels.solids.contact_front import CONTACT_REALS, RETRIED_IN
 from standoff.kernels.solids.contact_search import is_face
-from standoff.kernels.solids.contact_sets import gather_signed
+from standoff.kernels.solids.contact_sets import NO_MINIMUM, gather_signed
 from standoff.kernels.solids.front_branches import (
     BRANCH_REALS,
     branch_reach,
@@ -34,12 +35,12 @@ from standoff.kernels.solids.minima_sets import (
 )
 from standoff.kernels.solids.patch import normal_of
 from standoff.kernels.solids.spatial_progress import (
+    BOUND,
     LOST,
     MINIMUM_REALS,
     N_MINIMA,
     POINTS,
     SIZE,
-    TOLERANCE,
 )
 from standoff.kernels.solids.spatial_tolerances import ALIKE, FELT_SPARE, ONE_PLACE
 
@@ -53,18 +54,22 @@ S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS = 0, 3, 6, 7, 8
 SPOT_REALS = 9
 MOST_SPOTS = 96
 MOST_ROWS = 4096
+# In the place of a common normal's bound, once the places are told: it is felt as a spot.
+SPOT = -2.0
 # Springs that all spots along one normal are worth: those of a square's corners.
 MOST_SPRINGS = 4.0
 # What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
 # whether there was no room or time for some; how many that were felt ended in this frame without
 # coming to 0; how many spots; what B moved in each of the last frames, in turn; then the store of
-# the front, its branches, the places, the spots, and its rows with how long they rest.
+# the front, its branches, the places, the spots, those of the frame before, and the front's rows
+# with how long they rest.
 F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS, F_STEPS = 0, 1, 13, 14, 15, 16, 17
 F_STORE = F_STEPS + RETRIED_IN
 F_BRANCHES = F_STORE + STORE_REALS
 F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
 F_SPOT = F_AT + PLACE_REALS * MOST_PLACES
-F_ROWS = F_SPOT + SPOT_REALS * MOST_SPOTS
+F_BEFORE = F_SPOT + SPOT_REALS * MOST_SPOTS
+F_ROWS = F_BEFORE + SPOT_REALS * MOST_SPOTS
 KEPT_REALS = F_ROWS + CONTACT_REALS * MOST_ROWS
 
 
@@ -106,22 +111,27 @@ def middle_of_pair(rows, o):
 
 
 @kernel
-def goes_on(kept, p, minima, o, d, reach, step):
-    """May a pair of points, whose signed distance is d, go on from a place of the frame before: as
-    near as `reach` to it and as deep, or no deeper than it along much the same normal? Where flat
-    parts touch a place goes as far as they reach while they hardly turn, and another one begins."""
-    at = place_at(p)
-    if dot(read_vector(kept, at + P_NORMAL), normal_of(minima, o)) >= ALIKE:
-        return d >= kept[at + P_DISTANCE] - step
-    off = norm(sub(middle_of_pair(kept, at + P_A), middle_of_pair(minima, o + POINTS)))
-    return off <= reach and abs(kept[at + P_DISTANCE] - d) <= step
+def goes_on(kept, at, n, d, step):
+    """May a pair of points with a normal n, whose signed distance is d, go on from a place of the
+    frame before: no deeper than it, along much the same normal? Where flat parts touch a place goes
+    as far as they reach while they hardly turn, and another one begins."""
+    alike = dot(read_vector(kept, at + P_NORMAL), n) >= ALIKE
+    return alike and d >= kept[at + P_DISTANCE] - step
 
 
 @kernel
 def was_felt(kept, minima, o, d, reach, step):
-    """Does a pair of points go on from a place that was felt?"""
+    """Does a pair of points go on from a spot of the frame before that was as near as `reach`, or
+    from a place that was felt?"""
+    middle, n = middle_of_pair(minima, o + POINTS), normal_of(minima, o)
+    for k in range(int(kept[F_SPOTS])):
+        at = F_BEFORE + SPOT_REALS * k
+        near = norm(sub(read_vector(kept, at), middle)) <= reach
+        alike = dot(read_vector(kept, at + S_NORMAL), n) >= ALIKE
+        if near and alike and abs(kept[at + S_DEPTH] + d) <= step:
+            return True
     for p in range(int(kept[F_PLACES])):
-        if kept[place_at(p) + P_FELT] > 0.0 and goes_on(kept, p, minima, o, d, reach, step):
+        if kept[place_at(p) + P_FELT] > 0.0 and goes_on(kept, place_at(p), n, d, step):
             return True
     return False
 
@@ -147,18 +157,16 @@ def is_felt(kept, minima, o, d, asked, size):
 def ended_deep(minima, sets, n, felt, kept, asked, size):
     """How many places that were felt have ended without coming to 0, and without one that is felt,
     as deep as they were, in their stead."""
-    step, reach, count = jump_of(asked, size), branch_reach(size, asked.step), 0
+    step, count = jump_of(asked, size), 0
     for p in range(int(kept[F_PLACES])):
         o = place_at(p)
         if kept[o + P_FELT] == 0.0 or kept[o + P_DISTANCE] >= -step:
             continue
         ended = True
         for k in range(n):
-            d = sets[SET_REALS * k]
             row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
-            deep = felt[k] > 0.0 and d <= kept[o + P_DISTANCE] + step
-            # deeper is as good, so that its own depth is what is asked
-            if deep and goes_on(kept, p, minima, row, kept[o + P_DISTANCE], reach, step):
+            alike = dot(read_vector(kept, o + P_NORMAL), normal_of(minima, row)) >= ALIKE
+            if felt[k] > 0.0 and alike and sets[SET_REALS * k] <= kept[o + P_DISTANCE] + step:
                 ended = False
         count += 1 if ended else 0
     return count
@@ -178,18 +186,6 @@ def put_place(minima, sets, k, felt, kept):
 @kernel
 def spot_at(k):
     return F_SPOT + SPOT_REALS * k
-
-
-@kernel
-def is_of_a_place(kept, minima, o, tie):
-    """Does a common normal belong to a place that is felt: much the same, and no deeper?"""
-    n = normal_of(minima, o)
-    for p in range(int(kept[F_PLACES])):
-        at = place_at(p)
-        alike = dot(read_vector(kept, at + P_NORMAL), n) >= ALIKE
-        if kept[at + P_FELT] > 0.0 and alike and minima[o] >= kept[at + P_DISTANCE] - tie:
-            return True
-    return False
 
 
 @kernel
@@ -225,25 +221,33 @@ def is_of_a_line(both, leaves):
 
 
 @kernel
-def put_spots(both, best, minima, sets, kept):
-    """The spots of all places that are felt: the places themselves, and common normals at vertices
-    and at edges that cross or are curved."""
+def mark_felt(both, kept, minima, asked, best):
+    """Write into the last number of each common normal in overlap whether it is felt, as a spot: at
+    vertices, and at edges that cross or are curved."""
+    for i in range(int(best[N_MINIMA])):
+        o = MINIMUM_REALS * i
+        leaves, d = (int(minima[o + 1]), int(minima[o + 2])), minima[o]
+        spot = d < 0.0 and not is_of_a_line(both, leaves)
+        felt = spot and is_felt(kept, minima, o, d, asked, best[SIZE])
+        minima[o + BOUND] = SPOT if felt else NO_MINIMUM
+
+
+@kernel
+def put_spots(best, minima, sets, kept):
+    """The spots: all places that are felt, and what is marked."""
     kept[F_SPOTS] = 0.0
     for k in range(int(kept[F_PLACES])):
         if kept[place_at(k) + P_FELT] > 0.0 and kept[place_at(k) + P_DISTANCE] < 0.0:
             row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
             keep_spot(best, minima, row, kept)
     for i in range(int(best[N_MINIMA])):
-        o = MINIMUM_REALS * i
-        leaves = int(minima[o + 1]), int(minima[o + 2])
-        if minima[o] >= 0.0 or is_of_a_line(both, leaves):
-            continue
-        if is_of_a_place(kept, minima, o, best[TOLERANCE]):
-            keep_spot(best, minima, o, kept)
+        if minima[MINIMUM_REALS * i + BOUND] == SPOT:
+            keep_spot(best, minima, MINIMUM_REALS * i, kept)
 
 
 @kernel
 def force_of(kept, at):
+    """Of a whole spring, in parts of its stiffness."""
     return kept[at + S_DEPTH] * sqrt(kept[at + S_DEPTH])
 
 
@@ -295,15 +299,18 @@ def tell_places(both, front, asked, best, minima, sets, kept):
     front.store[N_MERGED] = 0.0
     number_sets(front, minima, sets, n, branch_reach(best[SIZE], asked.step), 0)
     renew_branches(front, minima, sets, n)
+    for k in range(SPOT_REALS * int(kept[F_SPOTS])):
+        kept[F_BEFORE + k] = kept[F_SPOT + k]
     felt = ahead(sets, SET_REALS * n)  # behind them there is room
     for k in range(n):
         row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
         known = is_felt(kept, minima, row, sets[SET_REALS * k], asked, best[SIZE])
         felt[k] = 1.0 if known else 0.0
+    mark_felt(both, kept, minima, asked, best)
     kept[F_ENDED] = ended_deep(minima, sets, n, felt, kept, asked, best[SIZE])
     for k in range(n):
         put_place(minima, sets, k, felt[k], kept)
     kept[F_PLACES], kept[F_MADE] = n, 1.0
-    put_spots(both, best, minima, sets, kept)
+    put_spots(best, minima, sets, kept)
     share_springs(kept, asked.span)
     kept[F_LOST] = best[LOST]
