@@ -54,19 +54,20 @@ class Search:
 
     def __init__(self, made: sim.System) -> None:
         law = so.PredictorCorrector(depth="local", within=WITHIN)
-        layout, numbers, ints, reals, options = sim.Operator(made, 1e-3, law=law).packed
+        layout, numbers, ints, reals, options, _ = sim.Operator(made, 1e-3, law=law).packed
         assert layout[K.I_NEAR] > 0
         self.made = made
         self.kept = [x.copy() for x in (layout, numbers, options)]
         pointers = [pointed(x) for x in self.kept]
+        solids = K.Solids(*(pointed(np.zeros(1)),) * 6)
         self.system = K.System(
-            pointers[0], pointers[1], ints, reals, pointers[2], pointed(self.kept[1])
+            pointers[0], pointers[1], ints, reals, pointers[2], pointed(self.kept[1]), solids
         )
         self.near, self.near_numbers = G.near_arrays(self.system)
         empty = pointed(np.zeros(1))
         array = np.zeros(1)
         self.scratch = K.Scratch(
-            array, empty, empty, empty, empty, array, empty, empty, empty, empty,
+            array, empty, empty, empty, empty, array, empty, empty, empty, empty, empty,
             pointed(self.near), pointed(self.near_numbers),
         )  # fmt: skip
 

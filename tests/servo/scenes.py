@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -20,14 +21,19 @@ def knocking(t: float) -> so.Pose:
     return so.Pose(np.eye(3), [0.02 * np.sin(1.7 * t), 0.02 * np.cos(2.3 * t), height])
 
 
-def coupled(max_age: float = 0.05, period: float = PERIOD) -> sim.Operator:
-    """The operator of ball and lens."""
+def coupled(
+    max_age: float = 0.05,
+    period: float = PERIOD,
+    stiffness: float = 1e5,
+    made: Callable[[so.Body], Any] = lambda body: body,
+) -> sim.Operator:
+    """The operator of ball and lens, of what is made of both bodies."""
     coupler = sim.VirtualCoupler(
         stiffness=400.0, damping=0.5, max_force=20.0, max_age=max_age, engage_time=0.0
     )
-    contact = sim.HuntCrossley(stiffness=1e5, damping=2.0, depth=5e-4)
-    lens = sim.RigidBody.fixed(so.shapes.lens(0.05, 0.0225))
-    ball = sim.RigidBody.free(so.shapes.sphere(0.01), mass=0.2, pose=knocking(0.0))
+    contact = sim.HuntCrossley(stiffness=stiffness, damping=2.0, depth=5e-4)
+    lens = sim.RigidBody.fixed(made(so.shapes.lens(0.05, 0.0225)))
+    ball = sim.RigidBody.free(made(so.shapes.sphere(0.01)), mass=0.2, pose=knocking(0.0))
     system = sim.System([lens, ball], contact, gravity=[0, 0, 0], coupler=coupler, tool=1)
     return sim.Operator(system, period)
 

@@ -31,6 +31,7 @@ from standoff.servo.exchange import Box
 from standoff.servo.loop_port import LoopPort
 from standoff.servo.statistics import end_of_bin, spread_of
 from standoff.simulation import Fault
+from standoff.solids import Solid
 
 TRACE = Trace(knocking, 0.0, 0.6, there_and_back=True)
 
@@ -67,7 +68,23 @@ def forced(servo: Servo) -> bool:
 
 
 def test_it_computes_what_the_operator_does(operator: sim.Operator) -> None:
-    """The same readings through `Operator.run`, which has no clock but its own."""
+    check_ticks(operator)
+
+
+def test_and_so_with_solids() -> None:
+    """Their places of contact are found in the loop; the hand feels what it felt of bodies."""
+    found, bodies = (
+        check_ticks(coupled(stiffness=4e4, made=made)) for made in (Solid, lambda b: b)
+    )
+    pressed = bodies.distances < 0.0
+    assert pressed.any()
+    np.testing.assert_allclose(found.distances[pressed], bodies.distances[pressed], atol=1e-9)
+    np.testing.assert_allclose(found.coupler.on_device, bodies.coupler.on_device, atol=1e-6)
+    assert found.spots.max() == 1
+
+
+def check_ticks(operator: sim.Operator) -> sim.SystemRun:
+    """The same readings through `Operator.run`, which has no clock but its own; what it did."""
     ticks = 200
     servo = Servo(operator, device=TRACE, seconds=ticks * PERIOD, max_age=1.0)
     servo.engage()
@@ -93,6 +110,7 @@ def test_it_computes_what_the_operator_does(operator: sim.Operator) -> None:
     assert report.statistics.engaged == report.statistics.ticks == ticks
     assert report.state.coupler is not None
     assert not report.state.coupler.wrench_on_device.force.any()
+    return expected
 
 
 @pytest.mark.usefixtures("counted")
