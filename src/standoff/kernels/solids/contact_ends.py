@@ -9,8 +9,7 @@ from standoff.kernels.algebra.vectors import axpy, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_minimum import middles_of
-from standoff.kernels.solids.contact_sets import NO_MINIMUM
-from standoff.kernels.solids.front_motion import put_three
+from standoff.kernels.solids.contact_sets import NO_MINIMUM, put_normal
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_minimum import jets_at, nearest
 from standoff.kernels.solids.spatial_pieces import (
@@ -22,13 +21,8 @@ from standoff.kernels.solids.spatial_pieces import (
 )
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
-    BOUND,
-    LOST,
     MINIMUM_REALS,
-    MOST_MINIMA,
     N_MINIMA,
-    NORMAL,
-    POINTS,
     SIZE,
     ball_round,
 )
@@ -95,15 +89,4 @@ def keep_end(both, leaves, best, minima, counts):
         return
     if not (on_solid(both.a, leaves[0], q[0], q[1]) and on_solid(both.b, leaves[1], q[2], q[3])):
         return
-    if best[N_MINIMA] >= best[MOST_MINIMA]:
-        best[LOST] += 1.0
-        return
-    o = MINIMUM_REALS * int(best[N_MINIMA])
-    minima[o], minima[o + 1], minima[o + 2] = d, leaves[0], leaves[1]
-    for k in range(4):
-        minima[o + 3 + k] = q[k]
-    put_three(minima, o + POINTS, ja[0])
-    put_three(minima, o + POINTS + 3, jb[0])
-    put_three(minima, o + NORMAL, n)
-    minima[o + BOUND] = NO_MINIMUM
-    best[N_MINIMA] += 1.0
+    put_normal(leaves, (q, n, d), (ja[0], jb[0]), NO_MINIMUM, best, minima)

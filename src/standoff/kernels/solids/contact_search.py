@@ -18,7 +18,7 @@ from standoff.kernels.solids.contact_minimum import (
     nearest_moved_apart,
     signed_minimum,
 )
-from standoff.kernels.solids.contact_sets import NO_MINIMUM
+from standoff.kernels.solids.contact_sets import NO_MINIMUM, put_normal
 from standoff.kernels.solids.front_branches import (
     B_AT,
     B_LEAVES,
@@ -42,11 +42,8 @@ from standoff.kernels.solids.spatial_progress import (
     LEAF_PAIRS,
     LOST,
     MINIMUM_REALS,
-    MOST_MINIMA,
     N_MINIMA,
     NODE_PAIRS,
-    NORMAL,
-    POINTS,
     ROUNDING,
     SIZE,
     evaluations,
@@ -94,20 +91,9 @@ def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
         if not is_stationary(a, b, fans[0], fans[1], q, leaves, back, AT_OPTIMUM):
             return
         still, n, d = True, back, -d
-    if best[N_MINIMA] >= best[MOST_MINIMA]:
-        best[LOST] += 1.0
-        return
     ja, jb = jets_at(a, leaves[0], b, leaves[1], q)
-    o = MINIMUM_REALS * int(best[N_MINIMA])
-    minima[o], minima[o + 1], minima[o + 2] = d, leaves[0], leaves[1]
-    for k in range(4):
-        minima[o + 3 + k] = q[k]
-    put_three(minima, o + POINTS, ja[0])
-    put_three(minima, o + POINTS + 3, jb[0])
-    put_three(minima, o + NORMAL, n)
     told = still and is_signed_minimum(ja, jb, n, d, best[SIZE])
-    minima[o + BOUND] = 0.0 if told else NO_MINIMUM
-    best[N_MINIMA] += 1.0
+    put_normal(leaves, (q, n, d), (ja[0], jb[0]), 0.0 if told else NO_MINIMUM, best, minima)
 
 
 @kernel

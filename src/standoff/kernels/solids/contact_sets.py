@@ -8,6 +8,7 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record, coedge_record, edge_record
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.front_motion import put_three
 from standoff.kernels.solids.minima_sets import (
     MOST_SETS,
     SET_BRANCH,
@@ -24,7 +25,9 @@ from standoff.kernels.solids.spatial_pieces import leaf_ints
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BOUND,
+    LOST,
     MINIMUM_REALS,
+    MOST_MINIMA,
     N_MINIMA,
     NORMAL,
     POINTS,
@@ -35,6 +38,25 @@ from standoff.kernels.solids.spatial_tolerances import ONE_PLACE
 
 # In the place of a row's bound stands which minimum it belongs to; of what is none:
 NO_MINIMUM = -1.0
+
+
+@kernel
+def put_normal(leaves, spot, points, number, best, minima):
+    """Add a common normal to the rows, if there is room. spot: parameters, normal, signed distance;
+    `number` stands in the place of its bound."""
+    if best[N_MINIMA] >= best[MOST_MINIMA]:
+        best[LOST] += 1.0
+        return
+    q, n, d = spot
+    o = MINIMUM_REALS * int(best[N_MINIMA])
+    minima[o], minima[o + 1], minima[o + 2] = d, leaves[0], leaves[1]
+    for k in range(4):
+        minima[o + 3 + k] = q[k]
+    put_three(minima, o + POINTS, points[0])
+    put_three(minima, o + POINTS + 3, points[1])
+    put_three(minima, o + NORMAL, n)
+    minima[o + BOUND] = number
+    best[N_MINIMA] += 1.0
 
 
 @kernel

@@ -6,10 +6,14 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import fields
 from multiprocessing import get_context
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from standoff.cli.terminal import tell
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 TELL = 30.0
 """Seconds between two lines."""
@@ -18,6 +22,13 @@ TOLD = 40
 
 
 Work = Callable[[int], tuple[Any, list[str]]]
+Counts = TypeVar("Counts", bound="DataclassInstance")
+
+
+def added(one: Counts, other: Counts) -> Counts:
+    """Two verdicts as one, count by count."""
+    names = [each.name for each in fields(one)]
+    return type(one)(**{name: getattr(one, name) + getattr(other, name) for name in names})
 
 
 def options(description: str | None, noun: str, count: int, size: int) -> argparse.ArgumentParser:
