@@ -266,3 +266,31 @@ def test_who_has_no_places_says_so() -> None:
     convex = pressed(PLATE, BALL, pose=at(0.2))
     with pytest.raises(StandoffError, match="of convex bodies"):
         convex.start().contact(0)
+
+
+def test_a_rim_that_lies_flat_has_four_springs_in_all() -> None:
+    """However many spots of it are known."""
+    law = HuntCrossley(stiffness=1e5, damping=5.0, friction=0.3, slip_speed=1e-2, depth=2e-3)
+    rim = solid_shapes.tube(0.1, 0.15, -0.05, 0.05)
+    operator = pressed(Solid(PLATE), rim, law, pose=at(0.0999))
+    run = run_of(operator, 1, allow_overlap=True)
+    spots = run.final.contact(0).spots
+    assert len(spots) > 8
+    # hardly less deep on one side after a tick
+    assert sum(spot.springs for spot in spots) == pytest.approx(4.0, rel=1e-4)
+    assert run.forces[0, 0, 2] == pytest.approx(4.0 * law.force(1e-4), rel=1e-6)
+
+
+def test_corners_side_by_side_share_a_spring() -> None:
+    """A board on edge: of both corners at each end one is as good as the other."""
+    thick = 2e-3
+    board = solid_shapes.prism([(-0.1, 0.0), (0.1, 0.0), (0.1, 0.02), (-0.1, 0.02)], thick)
+    turn = so.Pose.exp((np.pi / 2, 0.0, 0.0)).rotation
+    law = HuntCrossley(stiffness=1e2, damping=1.0, depth=1e-3)
+    operator = pressed(Solid(PLATE), board, law, 1e-4, pose=so.Pose(turn, [0.0, 0.0, 0.04999]))
+    spots = run_of(operator, 1, allow_overlap=True).final.contact(0).spots
+    assert len(spots) == 4
+    left = 1.0 - (thick / (0.1 * board.size)) ** 2
+    expected = 1.0 / (1.0 + left * left)
+    for spot in spots:
+        assert spot.springs == pytest.approx(expected, rel=1e-3)
