@@ -49,6 +49,10 @@ class NearestPair(NamedTuple):
     key : int
         In frames of a tracker: distinguishes it from the other minima of the run, from frame to
         frame. -1 in a query, and where the solids meet.
+    felt : bool
+        False in a frame of a tracker for a place of overlap that did not come from above 0: another
+        way out of a region that they overlap in already. Such places are told last, and the
+        distance is of the others.
     """
 
     distance: float
@@ -63,6 +67,7 @@ class NearestPair(NamedTuple):
     pieces: tuple[str, str] = ("", "")
     patch: tuple[PointPair, ...] = ()
     key: int = -1
+    felt: bool = True
 
 
 class Continuum(NamedTuple):

@@ -33,13 +33,13 @@ from standoff.kernels.dynamics.pair_motion import write_motion
 from standoff.kernels.dynamics.rigid_body import put
 from standoff.kernels.pair.events import N_COUNT_SLOTS
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.contact_front import Both, find_contacts
+from standoff.kernels.solids.contact_frame import MOST_NORMALS, Choices, contact_frame
+from standoff.kernels.solids.contact_front import MOST_RETRIED_IN, Both
 from standoff.kernels.solids.contact_places import (
     F_ENDED,
     F_LOST,
     F_MADE,
     F_PLACES,
-    F_POSE,
     F_SPOTS,
     KEPT_REALS,
     P_A,
@@ -50,23 +50,12 @@ from standoff.kernels.solids.contact_places import (
     S_DEPTH,
     S_NORMAL,
     S_SHARE,
-    Asked,
-    kept_front,
-    moved_lately,
     place_at,
     spot_at,
-    tell_places,
 )
-from standoff.kernels.solids.front_branches import MERGED_REALS, MOST_MERGED
-from standoff.kernels.solids.front_frame import FARTHEST_GONE, motion_between
-from standoff.kernels.solids.front_rows import GONE, N_ROWS
-from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS
-from standoff.kernels.solids.spatial_boxes import node_reach
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
-    BEST_REALS,
     BUDGET,
-    MINIMUM_REALS,
     MOST_MINIMA,
     ROUNDING,
     SIZE,
@@ -99,14 +88,8 @@ from standoff.kernels.values import Pose
 STILL = Pose((1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 # Depths, for which a contact is meant, up to which places are looked for.
 LOOKED_FOR = 8.0
-# Common normals that a frame may come to, and evaluations that it may take.
-MOST_NORMALS, MOST_EVALUATIONS = 2048, 200_000.0
-# Of the scratch: what is asked and found, the common normals, and the sets of them, of which one
-# more than there are holds which are felt.
-AT_NORMALS = BEST_REALS
-AT_SETS = AT_NORMALS + MINIMUM_REALS * MOST_NORMALS
-AT_MERGED = AT_SETS + SET_REALS * (MOST_SETS + 4)
-CONTACT_ROOM = AT_MERGED + MERGED_REALS * MOST_MERGED
+# Evaluations that a frame may take.
+MOST_EVALUATIONS = 200_000.0
 
 
 @kernel
@@ -156,35 +139,17 @@ def ask_contacts(system, pair, pose, best):
 
 
 @kernel
-def pose_at(kept):
-    return Pose(read_rotation(kept, F_POSE), read_vector(kept, F_POSE + 9))
-
-
-@kernel
 def find_places(system, pair, state, counts, scratch):
     """The places of a pair of solids where its bodies are now; their poses are in the motion."""
     m, kept = scratch.motion, pointer(state, kept_row(system, pair))
     pose = relative_pose(pointer(m, POSE_A), pointer(m, POSE_B))
     best = scratch.contact
     ask_contacts(system, pair, pose, best)
-    both = both_of(system, pair, pose)
-    step, radius = 0.0, node_reach(both.b, 0)
-    if kept[F_MADE] > 0.0:
-        before = both_of(system, pair, pose_at(kept)).b
-        step, radius = motion_between(before, both.b, best[SIZE])
-    front = kept_front(kept, ahead(best, AT_MERGED))
-    front.store[GONE] += step
-    if front.store[GONE] > FARTHEST_GONE * best[SIZE]:
-        front.store[N_ROWS], front.store[GONE] = 0.0, 0.0
-    minima, sets = ahead(best, AT_NORMALS), ahead(best, AT_SETS)
     for k in range(N_COUNT_SLOTS):
         counts[k] = 0
-    find_contacts(both, front, radius, best, minima, counts)
     span = system.numbers[pair_numbers(system, pair) + P_SPAN]
-    asked = Asked(moved_lately(kept, step), best[ABOVE], span)
-    tell_places(both, front, asked, best, minima, sets, kept)
-    put(pose.R, kept, F_POSE)
-    put(pose.p, kept, F_POSE + 9)
+    choices = Choices(span, 0.0, MOST_RETRIED_IN)
+    contact_frame(both_of(system, pair, pose), kept, choices, best, counts)
 
 
 @kernel

@@ -43,12 +43,7 @@ from standoff.kernels.dynamics.near_pairs import catch_up, find_near
 from standoff.kernels.dynamics.operator import change_of, step_bodies
 from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
 from standoff.kernels.dynamics.rigid_body import kinetic, potential, power
-from standoff.kernels.dynamics.solid_pairs import (
-    CONTACT_ROOM,
-    begin_solids,
-    is_of_solids,
-    track_solids,
-)
+from standoff.kernels.dynamics.solid_pairs import begin_solids, is_of_solids, track_solids
 from standoff.kernels.dynamics.system import clear_loads, touch_tracked
 from standoff.kernels.entries.frames import frame
 from standoff.kernels.frame.inputs import (
@@ -61,6 +56,7 @@ from standoff.kernels.frame.inputs import (
 )
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
+from standoff.kernels.solids.contact_frame import CONTACT_ROOM
 from standoff.kernels.state.arrays import (
     CONVERGED,
     DISTANCE,

@@ -4,7 +4,7 @@ at.
 
 A pair of nodes rests by what is proven of it. In a pair of leaves that may hold a common normal now
 Newton's method goes on in each frame from where it came to. Where it came to none it is tried again
-in one of so many frames, or where a branch ends, or a common normal leaves its leaves, that may go
+in one of some frames, or where a branch ends, or a common normal leaves its leaves, that may go
 on there.
 """
 
@@ -48,8 +48,8 @@ C_A, C_B, C_REST, C_TOLD, C_AT = 0, 1, 2, 3, 4
 CONTACT_REALS = 8
 # Not looked at yet; came to a common normal; came to none.
 UNSEEN, CAME, CAME_TO_NONE = 0.0, 1.0, 2.0
-# Of so many frames in one it is tried again in a pair of leaves in which it came to none.
-RETRIED_IN = 4
+# Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
+MOST_RETRIED_IN = 4
 
 
 class Both(NamedTuple):
@@ -204,14 +204,14 @@ def look_at_leaves(both, front, k, turn, best, minima, counts):
 
 
 @kernel
-def is_to_be_looked_at(front, k):
+def is_to_be_looked_at(front, k, retried):
     """Does a row not rest, in this frame?"""
     o, r = CONTACT_REALS * k, front.rows
     if r[o + C_REST] > front.store[GONE]:
         return False
     if r[o + C_TOLD] != CAME_TO_NONE or r[o + C_REST] == -inf:
         return True
-    return (int(front.store[FRAME]) + k) % RETRIED_IN == 0
+    return (int(front.store[FRAME]) + k) % retried == 0
 
 
 @kernel
@@ -224,10 +224,10 @@ def keep_ends(both, front, best, minima, counts):
 
 
 @kernel
-def look_at_rows(both, front, radius, best, minima, counts):
+def look_at_rows(both, front, radius, retried, best, minima, counts):
     k = 0
     while k < int(front.store[N_ROWS]):
-        if not is_to_be_looked_at(front, k):
+        if not is_to_be_looked_at(front, k, retried):
             k += 1
         elif front.rows[CONTACT_REALS * k + C_A] >= 0.0:
             look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
@@ -246,10 +246,11 @@ def look_at_woken(both, front, radius, best, minima, counts):
 
 
 @shared
-def find_contacts(both, front, radius, best, minima, counts):
+def find_contacts(both, front, radius, retried, best, minima, counts):
     """Keep the common normals up to best[ABOVE] on both sides of 0, and what the branches come to
     at any depth. What there is no room or time for counts as lost. `radius`: of B, length, by which
-    its turns count as motion."""
+    its turns count as motion; `retried`: of how many frames in one a pair of leaves is tried again
+    that came to none."""
     store = front.store
     best[N_MINIMA], best[LOST] = 0.0, 0.0
     store[FRAME] += 1.0
@@ -258,7 +259,7 @@ def find_contacts(both, front, radius, best, minima, counts):
         make_rows(front)
     follow_signed(both.a, both.b, both.fans, front, inf, best, minima, counts)
     wake_ended(both, front, best[ABOVE])
-    look_at_rows(both, front, radius, best, minima, counts)
+    look_at_rows(both, front, radius, retried, best, minima, counts)
     look_at_woken(both, front, radius, best, minima, counts)
     if is_pressed(best, minima):
         keep_ends(both, front, best, minima, counts)

@@ -16,7 +16,7 @@ from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids.contact_ends import is_straight
-from standoff.kernels.solids.contact_front import CONTACT_REALS, RETRIED_IN
+from standoff.kernels.solids.contact_front import CONTACT_REALS, MOST_RETRIED_IN
 from standoff.kernels.solids.contact_search import is_face
 from standoff.kernels.solids.contact_sets import NO_MINIMUM, gather_signed
 from standoff.kernels.solids.front_branches import (
@@ -28,12 +28,13 @@ from standoff.kernels.solids.front_branches import (
 from standoff.kernels.solids.front_motion import put_three
 from standoff.kernels.solids.front_rows import FRAME, N_MERGED, STORE_REALS, Front
 from standoff.kernels.solids.minima_sets import (
+    MOST_SETS,
     SET_BRANCH,
     SET_REALS,
     SET_ROW,
     points_of,
 )
-from standoff.kernels.solids.patch import normal_of
+from standoff.kernels.solids.patch import normal_of, span_all
 from standoff.kernels.solids.spatial_progress import (
     BOUND,
     LOST,
@@ -47,15 +48,16 @@ from standoff.kernels.solids.spatial_tolerances import ALIKE, FELT_SPARE, ONE_PL
 # What a place holds: its number; 1 where it is felt; signed distance, normal, and both points.
 P_KEY, P_FELT, P_DISTANCE, P_NORMAL, P_A, P_B = 0, 1, 2, 3, 6, 9
 PLACE_REALS = 12
-MOST_PLACES = 64
+MOST_PLACES = MOST_SETS
 # What a spot holds: where it is, its normal, its depth, its share of a spring, and how many springs
 # there are along its normal.
 S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS = 0, 3, 6, 7, 8
 SPOT_REALS = 9
 MOST_SPOTS = 96
 MOST_ROWS = 4096
-# In the place of a common normal's bound, once the places are told: it is felt as a spot.
-SPOT = -2.0
+# Of a common normal that is felt as a spot, once the places are told: this less the number of the
+# minimum that it belongs to stands in that number's place.
+SPOT = -3.0
 # Springs that all spots along one normal are worth: those of a square's corners.
 MOST_SPRINGS = 4.0
 # What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
@@ -64,7 +66,7 @@ MOST_SPRINGS = 4.0
 # the front, its branches, the places, the spots, those of the frame before, and the front's rows
 # with how long they rest.
 F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS, F_STEPS = 0, 1, 13, 14, 15, 16, 17
-F_STORE = F_STEPS + RETRIED_IN
+F_STORE = F_STEPS + MOST_RETRIED_IN
 F_BRANCHES = F_STORE + STORE_REALS
 F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
 F_SPOT = F_AT + PLACE_REALS * MOST_PLACES
@@ -76,11 +78,13 @@ KEPT_REALS = F_ROWS + CONTACT_REALS * MOST_ROWS
 class Asked(NamedTuple):
     """Of a frame, lengths: what B has moved in it and the last ones, at most, in which a place that
     is found now was not looked for; how deep a place may be that is felt in a frame without one
-    before; and within which distance spots share a spring."""
+    before; within which distance spots share a spring; and how much of the length up to which
+    places are looked for is for their patches alone."""
 
     step: Any
     deepest: Any
     span: Any
+    wider: Any
 
 
 @kernel
@@ -91,11 +95,11 @@ def kept_front(kept, merged):
 
 
 @kernel
-def moved_lately(kept, step):
-    """What B has moved in the last frames, with a step of this one, length."""
+def moved_lately(kept, step, retried):
+    """What B has moved in the last `retried` frames, with a step of this one, length."""
     front, total = ahead(kept, F_STORE), 0.0
-    kept[F_STEPS + int(front[FRAME]) % RETRIED_IN] = step
-    for k in range(RETRIED_IN):
+    kept[F_STEPS + int(front[FRAME]) % retried] = step
+    for k in range(retried):
         total += kept[F_STEPS + k]
     return total
 
@@ -222,14 +226,14 @@ def is_of_a_line(both, leaves):
 
 @kernel
 def mark_felt(both, kept, minima, asked, best):
-    """Write into the last number of each common normal in overlap whether it is felt, as a spot: at
-    vertices, and at edges that cross or are curved."""
+    """Mark each common normal in overlap that is felt as a spot: at vertices, and at edges that
+    cross or are curved."""
     for i in range(int(best[N_MINIMA])):
         o = MINIMUM_REALS * i
         leaves, d = (int(minima[o + 1]), int(minima[o + 2])), minima[o]
         spot = d < 0.0 and not is_of_a_line(both, leaves)
-        felt = spot and is_felt(kept, minima, o, d, asked, best[SIZE])
-        minima[o + BOUND] = SPOT if felt else NO_MINIMUM
+        if spot and is_felt(kept, minima, o, d, asked, best[SIZE]):
+            minima[o + BOUND] = SPOT - minima[o + BOUND]
 
 
 @kernel
@@ -241,7 +245,7 @@ def put_spots(best, minima, sets, kept):
             row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
             keep_spot(best, minima, row, kept)
     for i in range(int(best[N_MINIMA])):
-        if minima[MINIMUM_REALS * i + BOUND] == SPOT:
+        if minima[MINIMUM_REALS * i + BOUND] < NO_MINIMUM:
             keep_spot(best, minima, MINIMUM_REALS * i, kept)
 
 
@@ -291,11 +295,13 @@ def share_springs(kept, span):
 @kernel
 def tell_places(both, front, asked, best, minima, sets, kept):
     """The places of a frame and their spots into what is kept, of the common normals that were
-    found."""
-    n = gather_signed(both.a, both.b, best, minima, 0.0, sets)
-    if n < 0 or n > MOST_PLACES:
+    found; how many places."""
+    n = gather_signed(both.a, both.b, best, minima, asked.wider, sets)
+    if n < 0:
         best[LOST] += 1.0
-        n = min(max(n, 0), MOST_PLACES)
+        n = 0
+    if asked.wider > 0.0:
+        span_all(best, minima, asked.wider, sets, n)
     front.store[N_MERGED] = 0.0
     number_sets(front, minima, sets, n, branch_reach(best[SIZE], asked.step), 0)
     renew_branches(front, minima, sets, n)
@@ -314,3 +320,4 @@ def tell_places(both, front, asked, best, minima, sets, kept):
     put_spots(best, minima, sets, kept)
     share_springs(kept, asked.span)
     kept[F_LOST] = best[LOST]
+    return n

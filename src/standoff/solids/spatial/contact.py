@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solid_contact import pieces_parted, signed_minima
 from standoff.kernels.solids import spatial_progress as C
-from standoff.kernels.solids.front_rows import STORE_REALS
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, SET_ROW
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, started
@@ -39,7 +38,6 @@ NEXT_BALL = 0.9
 """Of a ball's radius: how far the middle of the next one is."""
 MOST_WAITING = 1 << 14
 """Pairs of nodes that wait in the search."""
-NO_BRANCHES = tuple(np.zeros(n) for n in (STORE_REALS, 1, 1, 1, 1))
 
 
 class SignedMinima(NamedTuple):
@@ -51,14 +49,11 @@ class SignedMinima(NamedTuple):
         All pairs of points with a common normal, minima or not.
     sets : (m, SET_REALS) array
         The minima, the deepest first.
-    whole : bool
-        Was there room and time for all?
     evaluations : int
     """
 
     rows: Array
     sets: Array
-    whole: bool
     evaluations: int
 
     def row_of(self, one: Array) -> Array:
@@ -86,21 +81,24 @@ def _room(thread: int) -> tuple[Array, Array, NDArray[np.int64]]:
     )
 
 
-def signed_minima_of(pair: PlacedPair, sought: Sought, branches: Any = NO_BRANCHES) -> SignedMinima:
-    """Those whose signed distance is at most `sought.above`, on either side of 0; `branches` are
-    the arrays of a front."""
+def signed_minima_of(pair: PlacedPair, sought: Sought) -> SignedMinima:
+    """Those whose signed distance is at most `sought.above`, on either side of 0."""
     best, _ = started(sought, pair.size, float(np.linalg.norm(pair.relative[9:])))
     best[C.MOST_MINIMA] = MOST_LOCAL
     rows, sets, stack = _room(threading.get_ident())
     counts = np.zeros(8, dtype=np.int64)
     solids, fans = (pair.a.packed, pair.b.packed), (fans_of(pair.a), fans_of(pair.b))
     lists, asked = (best, rows, sets), np.array([sought.patch])
-    n = int(signed_minima(solids, pair.relative, fans, branches, lists, asked, stack, counts))
-    count = int(best[C.N_MINIMA])
+    n = int(signed_minima(solids, pair.relative, fans, lists, asked, stack, counts))
+    return signed_told(best, rows, sets[: SET_REALS * max(n, 0)], counts)
+
+
+def signed_told(best: Array, rows: Array, sets: Array, counts: NDArray[np.int64]) -> SignedMinima:
+    """Copies of what a kernel tells."""
+    count = C.MINIMUM_REALS * int(best[C.N_MINIMA])
     return SignedMinima(
-        rows[: C.MINIMUM_REALS * count].reshape(-1, C.MINIMUM_REALS).copy(),
-        sets[: SET_REALS * max(n, 0)].reshape(-1, SET_REALS).copy(),
-        n >= 0 and best[C.LOST] == 0.0,
+        rows[:count].reshape(-1, C.MINIMUM_REALS).copy(),
+        sets.reshape(-1, SET_REALS).copy(),
         int(counts[C.BOXES] + 2 * counts[C.STEPS] + counts[C.NODE_PAIRS]),
     )
 
@@ -132,6 +130,21 @@ def regions_of(pair: PlacedPair, found: SignedMinima, tolerance: float) -> list[
         if depth > tolerance:
             told.append(Region(row, place, depth))
     return told[::-1]
+
+
+def felt_regions(
+    pair: PlacedPair, found: SignedMinima, felt: NDArray[np.bool_], tolerance: float
+) -> list[Region]:
+    """The places of overlap that have come from above 0, the deepest first; none where none of them
+    proves that the solids overlap. What is proven of more than one is left open."""
+    told: list[Region] = []
+    proven = False
+    for row in found.sets[felt & (found.sets[:, 0] < 0.0)][:MOST_REGIONS]:
+        place = place_of(pair, found, row)
+        depth = -np.inf if proven else least_depth(pair, place)
+        proven = proven or depth > tolerance
+        told.append(Region(row, place, depth))
+    return told if proven else []
 
 
 def least_depth(pair: PlacedPair, place: Place) -> float:

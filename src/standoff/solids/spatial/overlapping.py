@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
+from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import BOUND
-from standoff.solids.answer import SolidProximity
+from standoff.solids.answer import Overlap, SolidProximity
 from standoff.solids.parting import least_way_out
 from standoff.solids.spatial.contact import (
+    Region,
     SignedMinima,
     ball_of,
     bound_of,
+    felt_regions,
     place_of,
     regions_of,
 )
@@ -40,7 +45,7 @@ def told_overlapping(
     signed: SignedMinima,
     sought: Sought,
     minima: float | None,
-    is_apart: Callable[[PlacedPair, float], bool] | None = None,
+    is_apart: Callable[[PlacedPair, float], bool],
 ) -> Answered | None:
     """The answer where minima of the signed distance prove that the solids overlap; None where none
     does.
@@ -49,7 +54,7 @@ def told_overlapping(
     ----------
     minima : float or None
         Up to which distance minima are told that are no overlap; None: only the deepest place is.
-    is_apart : callable, optional
+    is_apart : callable
         Are two solids at poses proven to be apart, their distance to a tolerance? It is asked with
         B moved by the shortest vector that opens all places, to first order; and depths are proven
         as far as they can be.
@@ -57,20 +62,64 @@ def told_overlapping(
     regions = regions_of(pair, signed, sought.tolerance)
     if not regions:
         return None
-    rows, places = [region.row for region in regions], [region.place for region in regions]
-    overlap = ball_of(pair, signed, rows[0])
-    overlap = overlap._replace(depth=max(overlap.depth, *(each.depth for each in regions)))
-    if is_apart:
-        spare = max(PARTED_BY * sought.tolerance, PARTED_SPARE * -places[0].distance)
-        way = way_apart(places, spare)
-        if way is not None and is_apart(pair.moved(way), 0.5 * spare):
-            overlap = overlap._replace(parting=way)
-        overlap = overlap._replace(depth=max(overlap.depth, *(_deep(pair, p) for p in places)))
+    places, overlap = [region.place for region in regions], _overlap(pair, signed, regions)
+    spare = max(PARTED_BY * sought.tolerance, PARTED_SPARE * -places[0].distance)
+    way = way_apart(places, spare)
+    if way is not None and is_apart(pair.moved(way), 0.5 * spare):
+        overlap = overlap._replace(parting=way)
+    overlap = overlap._replace(depth=max(overlap.depth, *(_deep(pair, p) for p in places)))
+    rows = [region.row for region in regions]
     if minima is None:
-        rows, places = rows[:1], places[:1]
+        rows = rows[:1]
     else:
-        apart = [row for row in signed.sets if 0.0 <= row[0] <= minima]
-        rows, places = rows + apart, places + [place_of(pair, signed, row) for row in apart]
+        rows += [row for row in signed.sets if 0.0 <= row[0] <= minima]
+    return _told(pair, signed, overlap, rows, sought)
+
+
+def told_in_contact(
+    pair: PlacedPair,
+    signed: SignedMinima,
+    felt: NDArray[np.bool_],
+    sought: Sought,
+    minima: float | None,
+) -> Answered | None:
+    """The answer of a frame by the places that are followed; None where none that is felt proves
+    that the solids overlap.
+
+    Parameters
+    ----------
+    felt : (m,) array of bool
+        Of each minimum, has it come from above 0?
+    minima : float or None
+        As of `told_overlapping`; places that are not felt are told last.
+    """
+    regions = felt_regions(pair, signed, felt, sought.tolerance)
+    if not regions:
+        return None
+    rows = [region.row for region in regions]
+    if minima is None:
+        return _told(pair, signed, _overlap(pair, signed, regions), rows[:1], sought)
+    depth = signed.sets[:, 0]
+    rows += list(signed.sets[(depth >= 0.0) & (depth <= minima)])
+    ways = list(signed.sets[~felt & (depth < 0.0)])
+    answer, places = _told(pair, signed, _overlap(pair, signed, regions), rows + ways, sought)
+    named = zip(answer.minima, rows + ways, strict=True)
+    told = [m._replace(key=int(row[SET_BRANCH])) for m, row in named]
+    told[len(rows) :] = [m._replace(felt=False) for m in told[len(rows) :]]
+    return replace(answer, minima=tuple(told)), places
+
+
+def _overlap(pair: PlacedPair, signed: SignedMinima, regions: Sequence[Region]) -> Overlap:
+    """What is proven of the regions, the deepest first."""
+    ball = ball_of(pair, signed, regions[0].row)
+    return ball._replace(depth=max(ball.depth, *(each.depth for each in regions)))
+
+
+def _told(
+    pair: PlacedPair, signed: SignedMinima, overlap: Overlap, rows: Sequence[Array], sought: Sought
+) -> Answered:
+    """The answer that tells these minima, rows of sets, of which the first is its own."""
+    places = [place_of(pair, signed, row) for row in rows]
     for row, place in zip(rows, places, strict=True):
         if place.distance < 0.0:
             place.row[BOUND] = bound_of(pair, signed, row, sought)

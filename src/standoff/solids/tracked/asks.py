@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
-from standoff.solids.spatial.contact import signed_minima_of
 from standoff.solids.spatial.distance import (
     reach_of_minima,
     senses_of,
@@ -19,16 +18,16 @@ from standoff.solids.spatial.distance import (
     told_apart,
 )
 from standoff.solids.spatial.minimum import Sought
-from standoff.solids.spatial.overlapping import contact_reach, told_overlapping
+from standoff.solids.spatial.overlapping import contact_reach, told_in_contact
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import rows_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.told import Inside
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
+from standoff.solids.tracked.contact import begun, followed, front_after, unknown
 from standoff.solids.tracked.front import (
     NO_MINIMA,
-    Branches,
     Frames,
     Front,
     Minima,
@@ -36,6 +35,8 @@ from standoff.solids.tracked.front import (
     front_in_contact,
     room_for,
 )
+
+Array = NDArray[np.float64]
 
 
 class Asks(NamedTuple):
@@ -99,21 +100,26 @@ class Asks(NamedTuple):
         return answer, frames.kept()
 
     def met(
-        self, pair: PlacedPair, front: Front | None, born: int, motion: float
+        self, pair: PlacedPair, front: Front | None, born: int, before: Array
     ) -> tuple[SolidProximity, Front, NDArray[np.int64]] | None:
         """The answer of a frame in which the solids overlap, the front after it, and which branches
-        have come to the place of another one; None where that is not proven."""
+        have come to the place of another one; None where that is not proven. `before`: B's pose
+        (12,) in A's frame in the frame before, in which they were apart if there is a front without
+        a contact."""
         sought = self.sought(pair)
+        if front is None:
+            front, contact = front_in_contact(pair, sought, born), unknown(born)
+        elif front.contact is None:
+            contact = begun(before, front.store, front.branches)
+        else:
+            contact = front.contact
         reach = contact_reach(pair, sought)
-        branches = Branches(front or front_in_contact(pair, sought, born))
-        signed = signed_minima_of(pair, reach, branches.arrays)
-        told = told_overlapping(pair, signed, reach, self.options.minima)
+        places = followed(pair, reach, contact)
+        told = told_in_contact(pair, places.signed, places.felt, reach, self.options.minima)
         if told is None:
             return None
-        answer, places = told
-        if self.options.minima is not None:
-            answer = numbered(answer, branches.number(*rows_of(pair, places), motion))
-        return answer, branches.kept(pair.relative, places[0].row), branches.merged()
+        answer, at = told
+        return answer, front_after(front, places.kept, at[0].row), places.merged
 
     def apart(
         self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float

@@ -66,9 +66,9 @@ class Front(NamedTuple):
         As ``kernels.solids.front_branches`` does.
     senses : (2,) array of int
         From where each boundary is seen.
-    met : (12,) array, optional
-        B's pose in A's frame in the last frame, if the solids overlapped in it: the rest is of the
-        last one in which they were apart.
+    contact : array, optional
+        If the solids overlapped in the last frame, what is kept of that (``tracked.contact``): the
+        rest is of the last frame in which they were apart.
     """
 
     before: Array
@@ -78,7 +78,7 @@ class Front(NamedTuple):
     rows: Array
     branches: Array
     senses: NDArray[np.int64]
-    met: Array | None = None
+    contact: Array | None = None
 
     @property
     def born(self) -> int:
@@ -272,39 +272,6 @@ def numbers_of(
     numbers = np.full(len(sets), -1, dtype=np.int64)
     numbers[:n] = sets[:n, SET_BRANCH]
     return numbers
-
-
-class Branches:
-    """The branches of a front alone, in a frame in which the solids overlap: its rows stay as they
-    are."""
-
-    def __init__(self, front: Front) -> None:
-        self.front = front
-        work = _room(threading.get_ident())
-        store = front.store.copy()
-        store[N_MERGED] = 0.0
-        work.branches[: len(front.branches)] = front.branches
-        self.arrays = store, work.keys, work.rows, work.branches, work.merged
-
-    def number(self, rows: Array, sets: Array, motion: float) -> NDArray[np.int64]:
-        """As that of `Frames`."""
-        reach = SAME_BASIN * self.front.best[C.SIZE] + FRAMES_AHEAD * motion
-        return numbers_of(self.arrays, rows, sets, float(reach), 0)
-
-    def merged(self) -> NDArray[np.int64]:
-        """As that of `Frames`."""
-        return merged_of(self.arrays[0], self.arrays[-1])
-
-    def kept(self, at: Array, row: Array) -> Front:
-        """The front after the frame, with B at a pose (12,) in A's frame, and points of both
-        boundaries as a row of minima has them."""
-        store, branches, best = self.arrays[0], self.arrays[3], self.front.best.copy()
-        best[C.LEAF_A : C.AT + 4] = row[1:7]
-        count = BRANCH_REALS * int(store[N_BRANCHES])
-        kept, met = branches[:count].copy(), at.copy()
-        for array in (best, store, kept, met):
-            array.flags.writeable = False
-        return self.front._replace(best=best, store=store, branches=kept, met=met)
 
 
 def room_for(n: int) -> Array:

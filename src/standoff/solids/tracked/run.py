@@ -49,6 +49,13 @@ class Run:
         answer = self.special[0] if self.special else self._made(0)
         return self._state(answer, front), answer
 
+    @property
+    def _first(self) -> Array:
+        """B's pose (12,) in A's frame in the answer that the run begins from."""
+        a, b = self.state.proximity.poses
+        first: Array = _relative(a[None], b[None])[0]
+        return first
+
     def _state(self, answer: SolidProximity, front: Front | None) -> SolidState:
         born = self.born if front is None else front.born
         return SolidState(answer, (self.asks.a, self.asks.b), front, born)
@@ -87,7 +94,7 @@ class Run:
         """All frames; the front after the last."""
         front, at = self.state.front, 0
         while at < len(self.relative):
-            if front is None or front.met is not None:
+            if front is None or front.contact is not None:
                 front, at = self._meet(front, at)
             else:
                 front, at = self._gone(front, at)
@@ -98,10 +105,11 @@ class Run:
     ) -> tuple[Front | None, int]:
         """A frame in which the solids may overlap, after a motion, length, and those after it if
         they do not; the front after them."""
-        pair, last = self._pair(at), front.met if front else None
-        if last is not None:
-            motion = moved_by(last, pair.relative, self.asks.b.size)
-        told = self.asks.met(pair, front, self.born, 0.0 if np.isnan(motion) else motion)
+        pair, in_contact = self._pair(at), front is not None and front.contact is not None
+        before = self.relative[at - 1] if at else self._first
+        if in_contact:
+            motion = moved_by(before, pair.relative, self.asks.b.size)
+        told = self.asks.met(pair, front, self.born, before)
         if told is not None:
             self.special[at], front, merged = told
             for _, key, into in merged.tolist():
@@ -109,9 +117,9 @@ class Run:
             self.born = front.born
             self.told[at, T.MOTION], self.told[at, T.ANEW] = motion, 0.0
             return front, at + 1
-        if front is None or last is None:
+        if front is None or not in_contact:
             return self._ask(at), at + 1
-        front, after = self._gone(front._replace(met=None), at)
+        front, after = self._gone(front._replace(contact=None), at)
         self.told[at, T.MOTION] = motion  # and not since they were apart
         return front, after
 
