@@ -5,7 +5,8 @@ at.
 A pair of nodes rests by what is proven of it. In a pair of leaves that may hold a common normal now
 Newton's method goes on in each frame from where it came to. Where it came to none it is tried again
 in one of some frames, or where a branch ends, or a common normal leaves its leaves, that may go
-on there.
+on there; where the way there is held at a side of a leaf, not before the motion may have changed
+that.
 """
 
 from math import inf
@@ -16,15 +17,22 @@ from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_ends import is_pressed, keep_end
-from standoff.kernels.solids.contact_minimum import middles_of, nearest_moved_apart
+from standoff.kernels.solids.contact_minimum import middles_of, moved_side, nearest_moved_apart
 from standoff.kernels.solids.contact_search import (
     follow_signed,
     keep_signed,
     normal_in_leaves,
     rests_for,
 )
-from standoff.kernels.solids.front_branches import B_LEAVES, B_POINTS, B_TAKEN, BRANCH_REALS
+from standoff.kernels.solids.front_branches import (
+    B_LEAVES,
+    B_POINTS,
+    B_TAKEN,
+    BRANCH_REALS,
+    steepest_side,
+)
 from standoff.kernels.solids.front_frame import GROWN, GROWN_BY
+from standoff.kernels.solids.front_minima import RESTS
 from standoff.kernels.solids.front_rows import FRAME, GONE, MAKING, N_BRANCHES, N_MADE, N_ROWS
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
 from standoff.kernels.solids.spatial_minimum import jets_at
@@ -41,13 +49,15 @@ from standoff.kernels.solids.spatial_progress import (
     evaluations,
 )
 from standoff.kernels.solids.spatial_search import node_ints
+from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
 
 # What a row holds: leaves (-1 - node where it is a node), up to which motion it rests, what
 # Newton's method came to, and where; where it came to none, from where it began.
 C_A, C_B, C_REST, C_TOLD, C_AT = 0, 1, 2, 3, 4
 CONTACT_REALS = 8
-# Not looked at yet; came to a common normal; came to none.
-UNSEEN, CAME, CAME_TO_NONE = 0.0, 1.0, 2.0
+# Not looked at yet; came to a common normal; came to none; came to none, as the leaves moved apart
+# are nearest at a side of one, and rests while that can hardly have changed.
+UNSEEN, CAME, CAME_TO_NONE, HELD = 0.0, 1.0, 2.0, 3.0
 # Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
 MOST_RETRIED_IN = 4
 
@@ -129,12 +139,13 @@ def wake(both, front, leaves, x, y, reach):
     rows = front.rows
     for k in range(int(front.store[N_ROWS])):
         o = CONTACT_REALS * k
-        if rows[o + C_TOLD] != CAME_TO_NONE or rows[o + C_REST] > front.store[GONE]:
+        none = rows[o + C_TOLD] == CAME_TO_NONE and rows[o + C_REST] <= front.store[GONE]
+        if not (none or rows[o + C_TOLD] == HELD):
             continue
         if is_near(both.a, int(rows[o + C_A]), leaves[0], x, reach) and is_near(
             both.b, int(rows[o + C_B]), leaves[1], y, reach
         ):
-            rows[o + C_REST] = -inf
+            rows[o + C_REST], rows[o + C_TOLD] = -inf, CAME_TO_NONE
 
 
 @kernel
@@ -150,7 +161,7 @@ def wake_ended(both, front, reach):
 
 
 @kernel
-def go_on(pa, pb, front, k, best, counts):
+def go_on(pa, pb, front, k, turn, best, counts):
     """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d): from
     where it came to before, else from where the leaves are nearest moved apart."""
     o, r = CONTACT_REALS * k, front.rows
@@ -161,11 +172,29 @@ def go_on(pa, pb, front, k, best, counts):
         if found:
             put_four(r, o + C_AT, q)
             return True, q, n, d
-    start = nearest_moved_apart(pa, pb, middles_of(pa, pb) if told != CAME_TO_NONE else q, counts)
+    tried = told == CAME_TO_NONE or told == HELD
+    start, away = nearest_moved_apart(pa, pb, q if tried else middles_of(pa, pb), counts)
     found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
-    r[o + C_TOLD] = CAME if found else CAME_TO_NONE
+    r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
+    free = 0.0 if found else held_for(pa, pb, start, away, turn)
+    if free > 0.0:
+        r[o + C_TOLD], r[o + C_REST] = HELD, front.store[GONE] + free
     return found, q, n, d
+
+
+@kernel
+def held_for(a, b, q, away, turn):
+    """Of the motion of B that could level the slope at a side of two leaves, as parts, at which
+    they are nearest moved apart by a vector, some, length; 0 where they are held at none. `turn`:
+    as of `rests_for`."""
+    moved = S.Part(moved_side(b.side, away), b.leaf, b.box)
+    sine, _, _ = steepest_side(a, moved, q, False)
+    ja, jb = jets_at(a.side, a.leaf, moved.side, b.leaf, q)
+    distance = norm(sub(jb[0], ja[0]))
+    if sine <= HELD_SLOPE or distance == 0.0:
+        return 0.0
+    return RESTS * sine / (1.0 / distance + turn)
 
 
 @kernel
@@ -186,13 +215,14 @@ def look_at_leaves(both, front, k, turn, best, minima, counts):
     free = rests_for(pa, pb, turn, best)
     if free > 0.0:
         r[o + C_REST] = front.store[GONE] + free
+        r[o + C_TOLD] = CAME_TO_NONE if r[o + C_TOLD] == HELD else r[o + C_TOLD]
         return
     if evaluations(counts) > best[BUDGET]:
         best[LOST] += 1.0
         return
     came = r[o + C_TOLD] == CAME
     before = (r[o + C_AT], r[o + C_AT + 1], r[o + C_AT + 2], r[o + C_AT + 3])
-    found, q, n, d = go_on(pa, pb, front, k, best, counts)
+    found, q, n, d = go_on(pa, pb, front, k, turn, best, counts)
     if found:
         spot = q, n, d
         keep_signed(both.a, both.b, both.fans, leaves, spot, best[ABOVE], best, minima)
@@ -200,7 +230,6 @@ def look_at_leaves(both, front, k, turn, best, minima, counts):
     if came:
         ja, jb = jets_at(both.a, leaves[0], both.b, leaves[1], before)
         wake(both, front, (-1, -1), ja[0], jb[0], best[ABOVE])
-    r[o + C_REST] = front.store[GONE]
 
 
 @kernel
@@ -219,7 +248,8 @@ def keep_ends(both, front, best, minima, counts):
     """Keep the ends of edges' leaves under faces, of all pairs of leaves that do not rest."""
     for k in range(int(front.store[N_ROWS])):
         o, r = CONTACT_REALS * k, front.rows
-        if r[o + C_A] >= 0.0 and r[o + C_REST] <= front.store[GONE]:
+        rests = r[o + C_REST] > front.store[GONE] and r[o + C_TOLD] != HELD
+        if r[o + C_A] >= 0.0 and not rests:
             keep_end(both, (int(r[o + C_A]), int(r[o + C_B])), best, minima, counts)
 
 

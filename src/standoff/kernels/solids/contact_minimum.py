@@ -78,9 +78,9 @@ def middles_of(a, b):
 
 @kernel
 def nearest_moved_apart(a, b, start, counts):
-    """Parameters of the nearest points of two parts, of which one is moved away along a normal of
-    one by as much as both are long: a start from which Newton's method is near a common normal.
-    They are looked for from `start` on."""
+    """(parameters of the nearest points of two parts, of which one is moved away along a normal of
+    one by as much as both are long: a start from which Newton's method is near a common normal; by
+    which vector). They are looked for from `start` on."""
     q = middles_of(a, b)
     ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
     n = ZERO
@@ -92,7 +92,7 @@ def nearest_moved_apart(a, b, start, counts):
     far = ball_round(a)[1] + ball_round(b)[1] + norm(sub(jb[0], ja[0]))
     away = scale(far / length, n) if length > 0.0 else ZERO
     moved = moved_side(b.side, away)
-    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, start, counts)[0]
+    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, start, counts)[0], away
 
 
 @shared

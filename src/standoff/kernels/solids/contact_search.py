@@ -144,7 +144,7 @@ def look_in_leaves(a, leaf_a, b, leaf_b, fans, best, minima, counts):
     pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
     if rests_for(pa, pb, 0.0, best) > 0.0:
         return
-    q = nearest_moved_apart(pa, pb, middles_of(pa, pb), counts)
+    q, _ = nearest_moved_apart(pa, pb, middles_of(pa, pb), counts)
     found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
     if found:
         keep_signed(a, b, fans, (leaf_a, leaf_b), (q, n, d), best[ABOVE], best, minima)
