@@ -199,7 +199,7 @@ def test_states_are_values_and_runs_are_steps() -> None:
         assert np.abs(answer.point_a - run.point_a[k]).max() < 1e-14
         assert answer.counts == run[k].counts
     assert state.proximity.as_dict().keys() == first.proximity.as_dict().keys()
-    assert first.front.met is None
+    assert first.front.contact is None
     for one, other, third in zip(first.front[:-1], again.front[:-1], state.front[:-1], strict=True):
         assert (one == other).all()
         assert (one == third).all()

@@ -172,7 +172,7 @@ def go_on(pa, pb, front, k, turn, best, counts):
         if found:
             put_four(r, o + C_AT, q)
             return True, q, n, d
-    tried = told == CAME_TO_NONE or told == HELD
+    tried = told in (CAME_TO_NONE, HELD)
     start, away = nearest_moved_apart(pa, pb, q if tried else middles_of(pa, pb), counts)
     found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
