@@ -36,7 +36,7 @@ from standoff.kernels.solids.front_minima import RESTS
 from standoff.kernels.solids.front_rows import FRAME, GONE, MAKING, N_BRANCHES, N_MADE, N_ROWS
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
 from standoff.kernels.solids.spatial_minimum import jets_at
-from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_ints
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_box, leaf_ints
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BUDGET,
@@ -58,6 +58,8 @@ CONTACT_REALS = 8
 # Not looked at yet; came to a common normal; came to none; came to none, as the leaves moved apart
 # are nearest at a side of one, and rests while that can hardly have changed.
 UNSEEN, CAME, CAME_TO_NONE, HELD = 0.0, 1.0, 2.0, 3.0
+# Times the way of a common normal out of its leaves, within which it is looked for beside them.
+PAST_LEAF = 2.0
 # Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
 MOST_RETRIED_IN = 4
 
@@ -161,19 +163,31 @@ def wake_ended(both, front, reach):
 
 
 @kernel
-def go_on(pa, pb, front, k, turn, best, counts):
-    """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d): from
-    where it came to before, else from where the leaves are nearest moved apart."""
+def place_of(row, o):
+    return (row[o + C_AT], row[o + C_AT + 1], row[o + C_AT + 2], row[o + C_AT + 3])
+
+
+@kernel
+def wake_beside(both, front, k, q, best):
+    """A common normal has left the leaves of a row, towards parameters `q` as Newton's method
+    tells: look again in those where it may be now."""
+    r, o = front.rows, CONTACT_REALS * k
+    leaf_a, leaf_b = int(r[o + C_A]), int(r[o + C_B])
+    ja, jb = jets_at(both.a, leaf_a, both.b, leaf_b, place_of(r, o))
+    ka, kb = jets_at(both.a, leaf_a, both.b, leaf_b, q)
+    went = max(norm(sub(ka[0], ja[0])), norm(sub(kb[0], jb[0])))
+    reach = PAST_LEAF * went if went > 0.0 else best[ABOVE]
+    wake(both, front, (-1, -1), ja[0], jb[0], reach)
+
+
+@kernel
+def begin_again(pa, pb, front, k, turn, best, counts):
+    """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d), from
+    where they are nearest moved apart."""
     o, r = CONTACT_REALS * k, front.rows
-    told = r[o + C_TOLD]
-    q = (r[o + C_AT], r[o + C_AT + 1], r[o + C_AT + 2], r[o + C_AT + 3])
-    if told == CAME:
-        found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
-        if found:
-            put_four(r, o + C_AT, q)
-            return True, q, n, d
-    tried = told in (CAME_TO_NONE, HELD)
-    start, away = nearest_moved_apart(pa, pb, q if tried else middles_of(pa, pb), counts)
+    tried = r[o + C_TOLD] in (CAME_TO_NONE, HELD)
+    first = place_of(r, o) if tried else middles_of(pa, pb)
+    start, away = nearest_moved_apart(pa, pb, first, counts)
     found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
@@ -220,16 +234,18 @@ def look_at_leaves(both, front, k, turn, best, minima, counts):
     if evaluations(counts) > best[BUDGET]:
         best[LOST] += 1.0
         return
-    came = r[o + C_TOLD] == CAME
-    before = (r[o + C_AT], r[o + C_AT + 1], r[o + C_AT + 2], r[o + C_AT + 3])
-    found, q, n, d = go_on(pa, pb, front, k, turn, best, counts)
+    found, q, n, d = False, place_of(r, o), ZERO, 0.0
+    if r[o + C_TOLD] == CAME:
+        found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
+        if found:
+            put_four(r, o + C_AT, q)
+        else:
+            wake_beside(both, front, k, q, best)
+    if not found:
+        found, q, n, d = begin_again(pa, pb, front, k, turn, best, counts)
     if found:
         spot = q, n, d
         keep_signed(both.a, both.b, both.fans, leaves, spot, best[ABOVE], best, minima)
-        return
-    if came:
-        ja, jb = jets_at(both.a, leaves[0], both.b, leaves[1], before)
-        wake(both, front, (-1, -1), ja[0], jb[0], best[ABOVE])
 
 
 @kernel
