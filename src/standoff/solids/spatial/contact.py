@@ -28,6 +28,8 @@ MOST_REGIONS = 64
 """Minima below 0 that are looked at."""
 MOST_PUSHES = 2
 """Places that are tried for a ball."""
+MOST_TRIED = 8
+"""Pairs of points of one minimum that are tried for a depth."""
 ENOUGH = 0.5
 """Of what is the most that can be proven: no more is looked for."""
 BALL = 0.1
@@ -141,10 +143,26 @@ def felt_regions(
     proven = False
     for row in found.sets[felt & (found.sets[:, 0] < 0.0)][:MOST_REGIONS]:
         place = place_of(pair, found, row)
-        depth = -np.inf if proven else least_depth(pair, place)
+        depth = -np.inf if proven else depth_at(pair, found, row, tolerance)
         proven = proven or depth > tolerance
         told.append(Region(row, place, depth))
     return told if proven else []
+
+
+def depth_at(pair: PlacedPair, found: SignedMinima, row: Array, enough: float) -> float:
+    """As `least_depth`, by a minimum's place; where that is at the side of what overlaps, as of
+    faces that lie on each other, by a ball or by other pairs of points of the same minimum."""
+    depth = least_depth(pair, place_of(pair, found, row))
+    if depth <= enough:
+        depth = max(depth, ball_of(pair, found, row).depth)
+    for other in found.rows[found.rows[:, C.BOUND] == row[C.BOUND]][:MOST_TRIED]:
+        if depth > enough:
+            break
+        told = row.copy()
+        told[: C.BOUND] = other[: C.BOUND]
+        x, y = (other[o : o + 3] @ pair.ra.T + pair.pa for o in (C.POINTS, C.POINTS + 3))
+        depth = max(depth, least_depth(pair, Place(told, x, y, place_of(pair, found, row).normal)))
+    return depth
 
 
 def least_depth(pair: PlacedPair, place: Place) -> float:

@@ -100,19 +100,16 @@ class Asks(NamedTuple):
         return answer, frames.kept()
 
     def met(
-        self, pair: PlacedPair, front: Front | None, born: int, before: Array
+        self, pair: PlacedPair, front: Front | None, born: int, before: Array | None
     ) -> tuple[SolidProximity, Front, NDArray[np.int64]] | None:
         """The answer of a frame in which the solids overlap, the front after it, and which branches
         have come to the place of another one; None where that is not proven. `before`: B's pose
-        (12,) in A's frame in the frame before, in which they were apart if there is a front without
-        a contact."""
+        (12,) in A's frame in the frame before, if they did not overlap in it."""
         sought = self.sought(pair)
-        if front is None:
-            front, contact = front_in_contact(pair, sought, born), unknown(born)
-        elif front.contact is None:
-            contact = begun(before, front.store, front.branches)
-        else:
-            contact = front.contact
+        front = front or front_in_contact(pair, sought, born)
+        contact = front.contact
+        if contact is None:
+            contact = unknown(born) if before is None else begun(before, front)
         reach = contact_reach(pair, sought)
         places = followed(pair, reach, contact)
         told = told_in_contact(pair, places.signed, places.felt, reach, self.options.minima)

@@ -58,13 +58,16 @@ def _room(thread: int) -> tuple[Array, Array]:
     return np.zeros(P.KEPT_REALS), np.empty(CONTACT_ROOM)
 
 
-def begun(before: Array, store: Array, branches: Array) -> Array:
-    """A contact before its first frame, of solids that were apart with B at a pose (12,) in A's
-    frame, and had these branches: no place is felt that is deeper than B has moved since."""
+def begun(before: Array, front: Front) -> Array:
+    """A contact before its first frame, of solids that did not overlap with B at a pose (12,) in
+    A's frame: no place is felt that is deeper than B has moved since. Its branches are those of the
+    front, as many as there is room for."""
     kept = np.zeros(P.F_ROWS)
     kept[P.F_MADE] = 1.0
     kept[P.F_POSE : P.F_POSE + 12] = before
-    put_branches(kept, store, branches)
+    n = min(int(front.store[N_BRANCHES]), P.MOST_PLACES)
+    kept[P.F_STORE + N_BRANCHES], kept[P.F_STORE + NEXT_BRANCH] = n, front.born
+    kept[P.F_BRANCHES : P.F_BRANCHES + BRANCH_REALS * n] = front.branches[: BRANCH_REALS * n]
     return kept
 
 
@@ -74,13 +77,6 @@ def unknown(born: int) -> Array:
     kept = np.zeros(P.F_ROWS)
     kept[P.F_STORE + NEXT_BRANCH] = born
     return kept
-
-
-def put_branches(kept: Array, store: Array, branches: Array) -> None:
-    """Those of a front, as many as there is room for."""
-    n = min(int(store[N_BRANCHES]), P.MOST_PLACES)
-    kept[P.F_STORE + N_BRANCHES], kept[P.F_STORE + NEXT_BRANCH] = n, store[NEXT_BRANCH]
-    kept[P.F_BRANCHES : P.F_BRANCHES + BRANCH_REALS * n] = branches[: BRANCH_REALS * n]
 
 
 def front_after(front: Front, contact: Array, row: Array) -> Front:

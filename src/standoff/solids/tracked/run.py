@@ -56,6 +56,12 @@ class Run:
         first: Array = _relative(a[None], b[None])[0]
         return first
 
+    def _overlapped(self, k: int) -> bool:
+        """Did the solids overlap in a frame, -1: in the answer that the run begins from? A frame
+        that is not among the special ones tells that they are apart."""
+        answer = self.state.proximity if k < 0 else self.special.get(k)
+        return answer is not None and answer.overlap is not None
+
     def _state(self, answer: SolidProximity, front: Front | None) -> SolidState:
         born = self.born if front is None else front.born
         return SolidState(answer, (self.asks.a, self.asks.b), front, born)
@@ -109,7 +115,7 @@ class Run:
         before = self.relative[at - 1] if at else self._first
         if in_contact:
             motion = moved_by(before, pair.relative, self.asks.b.size)
-        told = self.asks.met(pair, front, self.born, before)
+        told = self.asks.met(pair, front, self.born, None if self._overlapped(at - 1) else before)
         if told is not None:
             self.special[at], front, merged = told
             for _, key, into in merged.tolist():
