@@ -86,8 +86,8 @@ def test_the_table_is_that_of_the_answers() -> None:
 
 def test_no_minimum_is_followed_through_an_overlap_that_is_too_deep_for_places() -> None:
     tracker = so.Tracker(FEET, BALL, minima=0.25)
-    down = [placed(np.eye(3), [0.5, y, 0.5]) for y in (1.4, 1.35, 0.7, 1.35, 1.4)]
-    answers = run(tracker, np.array(down))
+    ways = [(0.5, 1.4), (0.5, 1.35), (1.5, 0.25), (0.5, 1.35), (0.5, 1.4)]
+    answers = run(tracker, np.array([placed(np.eye(3), [x, y, 0.5]) for x, y in ways]))
     told = answers.minima
     assert answers.status[2] is Status.OVERLAPPING
     assert answers.restarts.tolist() == [False, False, True, True, False]
@@ -100,6 +100,15 @@ def test_no_minimum_is_followed_through_an_overlap_that_is_too_deep_for_places()
     assert ended == dict.fromkeys(last, End.MET)
     born = {each.key: each.reason for each in events if each.kind == "birth"}
     assert born == dict.fromkeys(first, Birth.START)
+
+
+def test_a_place_is_followed_deeper_than_others_are_looked_for() -> None:
+    tracker = so.Tracker(FEET, BALL, minima=0.25)
+    down = np.array([placed(np.eye(3), [0.5, y, 0.5]) for y in (1.4, 1.35, 0.7, 1.35, 1.4)])
+    answers = run(tracker, down)
+    assert not answers.restarts.any()
+    assert answers.distance == pytest.approx([0.1, 0.05, -0.6, 0.05, 0.1])
+    assert answers.minima.key.tolist() == [0] * 5
 
 
 def test_steps_and_runs_in_pieces_go_on_with_the_numbers() -> None:
