@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from standoff.scene import Scene, load_scene
-from standoff.view.panel import HANDS, Panel
+from standoff.view.pair_panel import HANDS
+from standoff.view.panel import Panel
 from standoff.view.served import ServedPage
 from standoff.view.server import stop
 from standoff.view.stage import Stage
