@@ -86,7 +86,7 @@ def test_an_answer_is_said_in_words(
     assert verdict(shown, "mm", 100.0) == said
     if short is not None:
         assert beside(shown, "mm", 100.0) == short
-    # a page asks for no rows of a batch, so none is refused, and draws no solids
+    # a page asks for no rows of a batch, so none is refused; solids have sentences of their own
     assert {status for status, *_ in SAID} == set(Status) - {Status.REFUSED, *OF_SOLIDS}
 
 

@@ -225,6 +225,11 @@ class ViewCommand:
     """Port to serve the page at; any that is free, if not given."""
     gallery: Annotated[Path | None, arg(metavar="FOLDER", help_behavior_hint="")] = None
     """Folder whose scenes the page can open too; that of SCENE, if not given."""
+    minima: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Of a pair with a solid that need not be convex: show all local minima below this distance,
+    0.3 of the smaller one's size if not given."""
+    patch: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Of such a pair: show the patch of each minimum, what is farther by no more than this."""
     open: Annotated[bool, arg(help_behavior_hint="")] = False
     """Open the page in the usual browser."""
 

@@ -10,8 +10,9 @@ from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.scene import Scene, SceneError, load_scene
 from standoff.view.gallery import scenes_in
+from standoff.view.minima_asked import MinimaAsked
 from standoff.view.moving_world import MovingWorld
-from standoff.view.opening import of_scene, page_of
+from standoff.view.opening import has_solids, of_scene, page_of
 
 
 def run_view(command: ViewCommand) -> int:
@@ -37,9 +38,16 @@ def run_view(command: ViewCommand) -> int:
         raise CommandError(
             "--gallery: the page of a world opens no other scenes; leave it out, or name a --pair"
         )
+    solids = isinstance(what, Scene) and has_solids(what)
+    if command.gallery is not None and solids:
+        raise CommandError("--gallery: the page of solids opens no other scenes; leave it out")
+    for option, given in (("--minima", command.minima), ("--patch", command.patch)):
+        if given is not None and not solids:
+            raise CommandError(f"{option}: it is for a pair with a solid that need not be convex")
+    asked = MinimaAsked(command.minima, command.patch)
     others = scenes_in(command.gallery or scene.file.parent)
     try:
-        page = page_of(what, host=command.host, port=command.port, others=others)
+        page = page_of(what, host=command.host, port=command.port, others=others, asked=asked)
     except (ModuleNotFoundError, StandoffError) as error:
         raise CommandError(str(error)) from error
     with page:

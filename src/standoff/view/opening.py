@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Fixed, Pose
@@ -19,37 +18,50 @@ from standoff.scene import Scene, load_scene
 from standoff.scene.motions import Motion
 from standoff.scene.pairs import Pair
 from standoff.scene.settings import TrackSettings
+from standoff.view.minima_asked import MinimaAsked
 from standoff.view.moving_world import MovingWorld, moving_world, world_of_scene
 from standoff.world import World
+from standoff.world.shapes import Shape, as_shape, is_solid
 from standoff.world.solid_pairs import refuse_solids
 
 if TYPE_CHECKING:
     from standoff.view.served import ServedPage
 
 GIVE = (
-    "give the file of a scene, a Scene, a Recording that so.track returned, two bodies with "
-    "their poses, a World with poses, or a World with paths and a duration"
+    "give the file of a scene, a Scene, a Recording that so.track returned, two bodies or solids "
+    "with their poses, a World with poses, or a World with paths and a duration"
 )
 
 
 def view(
-    *what: Any, host: str = "127.0.0.1", port: int | None = None, open: bool = True
+    *what: Any,
+    host: str = "127.0.0.1",
+    port: int | None = None,
+    open: bool = True,
+    minima: float | None = None,
+    patch: float | None = None,
 ) -> ServedPage:
     """Show a scene, a run, a pair of bodies or a world in the browser (docs/live-page.md).
 
     Parameters
     ----------
     *what
-        The file of a scene, a Scene, or a Recording that ``so.track`` returned; or two bodies
-        and where they are, ``so.view(a, b, pose_a, pose_b)``; or a World and where its moving
-        bodies are, ``so.view(world, poses)``, or how they move, ``so.view(world, paths, duration)``
-        with a mapping of names to paths and a time [s]. A scene with a ``[world]`` is shown as one.
+        The file of a scene, a Scene, or a Recording that ``so.track`` returned; or two bodies or
+        solids and where they are, ``so.view(a, b, pose_a, pose_b)``; or a World and where its
+        moving bodies are, ``so.view(world, poses)``, or how they move, ``so.view(world, paths,
+        duration)`` with a mapping of names to paths and a time [s]. A scene with a ``[world]`` is
+        shown as one.
     host : str
         Name or address to serve the page at; only this machine, if not given.
     port : int, optional
         Any that is free, if not given.
     open : bool
         Open the page in the usual browser.
+    minima : float, optional
+        Of a pair with a solid: the distance below which local minima are shown [length]; 0.3 of
+        the smaller one's size, if not given.
+    patch : float, optional
+        Of such a pair: each minimum with its patch, as of ``so.solids.distance`` [length].
 
     Returns
     -------
@@ -64,9 +76,11 @@ def view(
     TypeError
         If that cannot be shown.
     ValueError
-        If a scene is refused, the pair cannot be tracked, or the port is not available.
+        If a scene is refused, the pair cannot be tracked, or the port is not available; if minima
+        or patches are asked of what is no pair with a solid.
     """
-    page = page_of(_shown(what), host=host, port=port)
+    asked = MinimaAsked(minima, patch)
+    page = page_of(_shown(what), host=host, port=port, asked=asked)
     if open:
         import webbrowser
 
@@ -80,6 +94,7 @@ def page_of(
     host: str,
     port: int | None,
     others: Mapping[str, Path] | None = None,
+    asked: MinimaAsked | None = None,
 ) -> ServedPage:
     """Return the page of a scene's pair or of a world, served.
 
@@ -89,13 +104,26 @@ def page_of(
     host, port
         As of `view`.
     others : mapping of str to Path, optional
-        Scenes of pairs that the page of a pair can open besides, by title.
+        Scenes of pairs that the page of a pair of bodies can open besides, by title.
+    asked : MinimaAsked, optional
+        Of a pair with a solid.
 
     Raises
     ------
     ModuleNotFoundError, TypeError, ValueError
         As `view`.
     """
+    if isinstance(what, Scene) and has_solids(what):
+        from standoff.view.solid_page import SolidPage
+
+        return SolidPage(what, asked, host=host, port=port)
+    for name, value in (asked or MinimaAsked())._asdict().items():
+        if value is not None:
+            raise StandoffError(
+                f"{name} = {value!r}: this page is of no pair with a solid; leave it out.",
+                name,
+                value,
+            )
     if isinstance(what, Scene):
         from standoff.view.page import Page
 
@@ -108,6 +136,11 @@ def page_of(
     from standoff.view.world_page import WorldPage
 
     return WorldPage(what, host=host, port=port)
+
+
+def has_solids(scene: Scene) -> bool:
+    """Is a scene seen through a pair of which at least one is a solid?"""
+    return any(is_solid(shape) for shape in scene.pair_shapes)
 
 
 def of_scene(scene: Scene) -> Scene | MovingWorld:
@@ -125,14 +158,20 @@ def _shown(what: tuple[Any, ...]) -> Scene | MovingWorld:
             return of_scene(load_scene(file))
         case (Recording() as recording,):
             return scene_of(recording)
-        case (Body() as a, Body() as b, pose_a, pose_b):
-            paths = Fixed(Pose.of(pose_a)), Fixed(Pose.of(pose_b))
-            return _made((a, b), paths, "Two bodies", "", TrackSettings())
         case (World() as world, poses):
             return moving_world(world, poses)
         case (World() as world, paths, duration):
             return moving_world(world, paths, duration)
+        case (a, b, pose_a, pose_b) if (pair := _pair(a, b)) is not None:
+            paths = Fixed(Pose.of(pose_a)), Fixed(Pose.of(pose_b))
+            return _made(pair, paths, "Two bodies", "", TrackSettings())
     raise StandoffTypeError(f"{shown(what)} cannot be shown: {GIVE}.", "what", what)
+
+
+def _pair(a: Any, b: Any) -> tuple[Shape, Shape] | None:
+    """Two bodies or solids; None of anything else."""
+    shapes = as_shape(a), as_shape(b)
+    return None if any(shape is None for shape in shapes) else shapes
 
 
 @dataclass(frozen=True)
@@ -182,7 +221,7 @@ def scene_of(recording: Recording) -> Scene:
 
 
 def _made(
-    bodies: tuple[Body, Body],
+    bodies: tuple[Shape, Shape],
     paths: tuple[Any, Any],
     title: str,
     unit: str,

@@ -6,11 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from standoff.errors import StandoffError
 from standoff.scene import Scene, load_scene
-from standoff.view.panel import HANDS, Panel
+from standoff.view.pair_panel import HANDS
+from standoff.view.panel import Panel
 from standoff.view.served import ServedPage
 from standoff.view.server import stop
 from standoff.view.stage import Stage
+from standoff.world.shapes import is_solid
 
 
 class Page(ServedPage):
@@ -80,6 +83,11 @@ class Page(ServedPage):
         """Show another scene; where it cannot be shown, the one there is stays."""
         if title in self._others:
             scene = load_scene(self._others[title])
+            if any(is_solid(shape) for shape in scene.pair_shapes):
+                raise StandoffError(
+                    f"{scene.file.name} is of a solid that need not be convex, which has a page of "
+                    "its own: start `standoff view` with it."
+                )
             limit = self.stage.max_force
             self.stage = Stage(self.server, self.panel, self._asked.put, scene, limit)
 

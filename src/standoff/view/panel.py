@@ -8,28 +8,23 @@ from html import escape
 from typing import Any, Protocol
 
 from standoff.view.laws import INTEGRATORS, NAMES
-from standoff.view.motion_panel import MotionPanel, Plays
+from standoff.view.pair_panel import Hands, PairPanel
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE
 from standoff.view.readout import readout
 from standoff.view.shown import Shown
-from standoff.view.tolerances import MAX_TEXT
 
 LOGGED = 12
 """Newest switches that the log shows."""
-
-HANDS = ("A", "B", "nothing")
 
 ROW = "<tr><td>{:.3f} s</td><td>{}</td><td>{} → {}</td></tr>"
 LOG = '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0">{}</table>'
 NONE_YET = '<div style="font-size:.8em;margin:.5em .9em;opacity:.65">no switch yet</div>'
 
 
-class Asks(Plays, Protocol):
+class Asks(Hands, Protocol):
     """What a user of the page can ask for; each is done between two looks of the page's thread."""
 
-    def hand(self, which: str) -> None: ...
-    def back(self) -> None: ...
     def pull(self, on: bool) -> None: ...
     def limit(self, force: float) -> None: ...
     def law(self, name: str, integrator: str, share: float) -> None: ...
@@ -37,7 +32,7 @@ class Asks(Plays, Protocol):
     def export(self, client: Any) -> None: ...
 
 
-class Panel(MotionPanel):
+class Panel(PairPanel):
     """All elements of the panel, for the life of a page.
 
     Parameters
@@ -60,7 +55,6 @@ class Panel(MotionPanel):
         super().__init__(server, later, asks)
         self._asks: Asks = asks
         self._log: deque[str] = deque(maxlen=LOGGED)
-        self._names, self._unit, self._size = ("A", "B"), "", 1.0
         tabs = server.gui.add_tab_group()
         with tabs.add_tab("Move"):
             self._make_motion()
@@ -74,6 +68,7 @@ class Panel(MotionPanel):
     def _make_motion(self) -> None:
         self._make_playing()
         self._make_hand()
+        self._make_pull()
         self._export = self._gui.add_button("Save the run as a page")
 
         @self._export.on_click
@@ -81,25 +76,12 @@ class Panel(MotionPanel):
             client = event.client
             self._later(lambda: self._asks.export(client))
 
-    def _make_hand(self) -> None:
+    def _make_pull(self) -> None:
         gui = self._gui
-        self._hand = gui.add_dropdown("drag", HANDS, initial_value="A")
-        self._back = gui.add_button("Back to the scene's poses", visible=False)
         self._pull = gui.add_checkbox("through a spring", False)
         self._limit = gui.add_slider(
             "greatest force, N", LEAST_FORCE, MAX_FORCE, 0.1, MAX_FORCE, visible=False
         )
-
-        @self._hand.on_update
-        async def _(event: Any) -> None:
-            options, value = tuple(self._hand.options), event.target.value
-            if event.client is not None and value in options:
-                which = HANDS[options.index(value)]
-                self._later(lambda: self._asks.hand(which))
-
-        @self._back.on_click
-        async def _(_: Any) -> None:
-            self._later(self._asks.back)
 
         @self._pull.on_update
         async def _(event: Any) -> None:
@@ -151,38 +133,9 @@ class Panel(MotionPanel):
         unit: str,
         size: float,
     ) -> None:
-        """Set the panel up for a scene.
-
-        Parameters
-        ----------
-        title : str
-        player : Player or None
-        which : str
-            Of A and B the one that is dragged.
-        names : (str, str)
-            Of both bodies.
-        unit : str
-            Label of lengths.
-        size : float
-            Of the bodies, in that unit.
-        """
-        self._names, self._unit, self._size = names, unit, size
-        self._gui.set_panel_label(title)
+        """Set the panel up for a scene, as of `PairPanel`."""
+        super().begin(title, player, which, names, unit, size)
         self._export.visible = player is not None
-        self._moves(player)
-        # A name is cut to what a message may hold; its letter keeps the two apart then.
-        hands = [
-            f"{name[: MAX_TEXT - 4]} ({letter})" for name, letter in zip(names, "AB", strict=True)
-        ]
-        self._hand.options = (*hands, HANDS[-1])
-        self._hand.value = hands["AB".index(which)]
-        self.strayed(False)
-        self._plot.begin(size)
-        self.forget()
-
-    def strayed(self, off: bool) -> None:
-        """Show whether bodies are elsewhere than the scene says, so that there is a way back."""
-        self._back.visible = off
 
     def pull_is(self, on: bool, limit: float) -> None:
         """Show whether the body is pulled through the coupler, and its greatest force [N]."""
@@ -200,7 +153,7 @@ class Panel(MotionPanel):
 
     def forget(self) -> None:
         """Empty plot and log."""
-        self._plot.forget()
+        super().forget()
         self._log.clear()
         self._switches.content = NONE_YET
 
@@ -218,7 +171,3 @@ class Panel(MotionPanel):
     def traces(self, time: float, shown: Shown) -> None:
         """Add an instant of a body that is moved by hand to the plot."""
         self._plot.traces(time, shown)
-
-    def rests(self) -> None:
-        """Show the plot up to where the hand has stopped."""
-        self._plot.rests()

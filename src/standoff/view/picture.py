@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
+from standoff.bodies.boundary import Boundary
+from standoff.bodies.features import Feature
 from standoff.motion import Pose
 from standoff.view.nodes import COLOURS, AnswerNodes, BodyNodes, quaternion
 from standoff.view.readout import beside
@@ -53,17 +54,20 @@ class Aimable:
             self.aim_one(client)
 
 
-class Picture(Aimable):
-    """What a server shows of a pair; all else in its scene is taken away.
+class PairPicture(Aimable):
+    """Both bodies of a pair with their handles; all else in a server's scene is taken away.
 
     Parameters
     ----------
     server : viser.ViserServer
-    bodies : (Body, Body)
+    bodies : (Boundary, Boundary)
+        Convex bodies, or boundaries of solids that need not be.
     unit : str
         Label of lengths.
     handles : bool
         Whether bodies have handles to drag them by.
+    corners : bool
+        Whether vertices are drawn.
 
     Attributes
     ----------
@@ -75,7 +79,13 @@ class Picture(Aimable):
     """
 
     def __init__(
-        self, server: Any, bodies: tuple[Body, Body], unit: str, *, handles: bool = True
+        self,
+        server: Any,
+        bodies: tuple[Boundary, Boundary],
+        unit: str,
+        *,
+        handles: bool = True,
+        corners: bool = True,
     ) -> None:
         self._server, self._unit = server, unit
         scene = server.scene
@@ -84,11 +94,10 @@ class Picture(Aimable):
         self.planar = any(body.dimension == 2 for body in bodies)
         self.shapes: tuple[Shape, Shape] = shape_of(bodies[0]), shape_of(bodies[1])
         self._bodies = [
-            BodyNodes(scene, f"/{which}", shape, COLOURS[number])
+            BodyNodes(scene, f"/{which}", shape, COLOURS[number], corners=corners)
             for number, (which, shape) in enumerate(zip("AB", self.shapes, strict=True))
         ]
         self.size = max(shape.size for shape in self.shapes)
-        self._answer = AnswerNodes(scene, self.size)
         self.handles = [self._handle(number) for number in (0, 1)] if handles else []
 
     def _handle(self, number: int) -> Any:
@@ -109,6 +118,41 @@ class Picture(Aimable):
         reach += 0.6 * max(shape.size for shape in self.shapes)
         aim_all(self._server, middle, reach, planar=self.planar)
 
+    def _seen_into(self, distance: float) -> bool:
+        """Is an overlap so deep that it is looked into?"""
+        return -distance > SEEN_INTO * min(shape.size for shape in self.shapes)
+
+    def _place(
+        self, poses: tuple[Pose, Pose], features: tuple[Feature, Feature], normal: Array
+    ) -> None:
+        """Put both bodies at poses, with their active features; normal (3,) from A to B."""
+        for nodes, pose, feature, sign in zip(
+            self._bodies, poses, features, (1.0, -1.0), strict=True
+        ):
+            nodes.place(pose)
+            nodes.highlight(feature, sign * (pose.rotation.T @ normal))
+
+    def _place_handles(
+        self, poses: tuple[Pose, Pose], *, deep: bool, held: int | None = None
+    ) -> None:
+        for number, handle in enumerate(self.handles):
+            handle.opacity = FAINT if deep else FIRM
+            if number != held:
+                # Its squares are never faint: they go, but not out of a hand.
+                handle.disable_sliders = deep and not self.planar
+                pose = poses[number]
+                handle.wxyz, handle.position = quaternion(pose), tuple(pose.translation)
+
+
+class Picture(PairPicture):
+    """What a server shows of a pair of convex bodies; its arguments are those of `PairPicture`."""
+
+    def __init__(
+        self, server: Any, bodies: tuple[Boundary, Boundary], unit: str, *, handles: bool = True
+    ) -> None:
+        super().__init__(server, bodies, unit, handles=handles)
+        self._answer = AnswerNodes(server.scene, self.size)
+
     def pull(self, at: Any, force: Any, greatest: float) -> None:
         """Draw the coupler's force on a tool; see `AnswerNodes.pull`."""
         self._answer.pull(at, force, greatest)
@@ -124,20 +168,11 @@ class Picture(Aimable):
         held : int, optional
             Number of the handle that is in a user's hand: it is left there.
         """
-        small = min(shape.size for shape in self.shapes)
-        deep = shown.status.penetrating and -shown.distance > SEEN_INTO * small
-        sides = zip(self._bodies, shown.poses, shown.features, (1.0, -1.0), strict=True)
-        for nodes, pose, feature, sign in sides:
-            nodes.place(pose)
+        deep = shown.status.penetrating and self._seen_into(shown.distance)
+        for nodes in self._bodies:
             nodes.glass(deep)
-            nodes.highlight(feature, sign * (pose.rotation.T @ shown.normal))
-        for number, handle in enumerate(self.handles):
-            handle.opacity = FAINT if deep else FIRM
-            if number != held:
-                # Its squares are never faint: they go, but not out of a hand.
-                handle.disable_sliders = deep and not self.planar
-                pose = shown.poses[number]
-                handle.wxyz, handle.position = quaternion(pose), tuple(pose.translation)
+        self._place(shown.poses, shown.features, shown.normal)
+        self._place_handles(shown.poses, deep=deep, held=held)
         text = beside(shown, self._unit, self.size)
         self._answer.show(shown.points, shown.normal, f"{note}{text}", deep=deep)
 

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
+from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import FaceMesh, edge_lines, face_meshes
 from standoff.view.tolerances import LIFT
@@ -34,7 +34,7 @@ class Shape:
 
     Attributes
     ----------
-    body : Body
+    body : Boundary
     skin : Mesh or None
         The whole surface; None of a planar body, and of a point or segment without a radius.
     faces : dict of int to Mesh
@@ -50,7 +50,7 @@ class Shape:
         Of that box.
     """
 
-    body: Body
+    body: Boundary
     skin: Mesh | None
     faces: dict[int, Mesh]
     edges: dict[int, Array]
@@ -76,12 +76,13 @@ class Shape:
         return point
 
 
-def shape_of(body: Body) -> Shape:
+def shape_of(body: Boundary) -> Shape:
     """Return what is shown of a body.
 
     Parameters
     ----------
-    body : Body
+    body : Boundary
+        A convex body, or the boundary of a solid that need not be.
 
     Returns
     -------

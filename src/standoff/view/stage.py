@@ -8,23 +8,23 @@ from typing import Any
 import numpy as np
 
 from standoff.errors import StandoffError
-from standoff.motion import Fixed, Pose
+from standoff.motion import Pose
 from standoff.recording import Recording
 from standoff.scene import Scene
 from standoff.scene.run import record
 from standoff.tracking import PaperLaw
 from standoff.view import laws
 from standoff.view.live_pair import LivePair
+from standoff.view.pair_stage import PairStage, moving_body
 from standoff.view.panel import Panel
 from standoff.view.picture import Picture
-from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE, Pull
 from standoff.view.server import name_tab
 from standoff.view.shown import Shown, of_answer, of_frame
 
 
-class Stage(PlayedStage[Recording]):
+class Stage(PairStage[Recording]):
     """A scene as a page shows it.
 
     Parameters
@@ -61,25 +61,21 @@ class Stage(PlayedStage[Recording]):
         scene: Scene,
         max_force: float = MAX_FORCE,
     ) -> None:
-        self.scene, self._server = scene, server
+        self._server = server
         self.panel: Panel = panel
         self._settings = scene.settings
         self._dt = laws.frame_time(scene)
         start = scene.instant()
         poses = [Pose.of(motion.path.pose(start)) for motion in scene.pair_motions]
-        self.pair = LivePair(*scene.pair_bodies, (poses[0], poses[1]), scene.settings.law, self._dt)
+        home = poses[0], poses[1]
+        self.pair: LivePair = LivePair(*scene.pair_bodies, home, scene.settings.law, self._dt)
         self.player = Player(record(scene)) if laws.moves(scene) else None
-        self._home = self._wanted = self.pair.poses
-        self._by_hand = self.player is None
-        self._clock = 0.0
-        self._held: int | None = None
-        self._hand: int | None = moving_body(scene)
+        self._begin(scene, self.pair.poses)
         self._pull: Pull | None = None
         self.max_force = max_force
         # All that may be refused has been asked: now the page changes.
-        self.picture = Picture(server, self.pair.bodies, scene.length_unit)
-        for number, handle in enumerate(self.picture.handles):
-            self._listen(number, handle, later)
+        self.picture: Picture = Picture(server, self.pair.bodies, scene.length_unit)
+        self._listen(self.picture.handles, later)
         self.picture.aim(self.pair.poses)
         which = "AB"[moving_body(scene)]
         panel.pull_is(False, max_force)
@@ -88,42 +84,13 @@ class Stage(PlayedStage[Recording]):
         name_tab(server, scene.title)
         self._tell_law()
         self.hand(which)
-        self._show(of_answer(self.pair.answer, self.pair.poses))
-
-    @property
-    def title(self) -> str:
-        """The scene's."""
-        return self.scene.title
-
-    def _listen(
-        self, number: int, handle: Any, later: Callable[[Callable[[], None]], None]
-    ) -> None:
-        @handle.on_update
-        async def _(event: Any) -> None:
-            held, phase = event.target, event.phase
-            wxyz, position = np.array(held.wxyz), np.array(held.position)
-            later(lambda: self._drag(number, wxyz, position, held=phase != "end"))
+        self._show_pair()
 
     def hand(self, which: str) -> None:
         """Give the handle to A, to B or to nothing."""
-        self._hand = "AB".index(which) if which in "AB" else None
+        super().hand(which)
         if self._pull is not None and self._pull.number != self._hand:
             self._let_go()
-        for name, handle in zip("AB", self.picture.handles, strict=True):
-            handle.visible = name == which
-
-    def back(self) -> None:
-        """Put the bodies back to where the scene has them; in a motion, at its present time."""
-        if self.player is not None:
-            self._play_on()
-            self._show_frame(self.player)
-            return
-        self._let_go()
-        self.pair.restart(self._home)
-        self._wanted, self._held, self._clock = self._home, None, 0.0
-        self.panel.forget()
-        self.panel.strayed(False)
-        self._show(of_answer(self.pair.answer, self.pair.poses))
 
     def pull(self, on: bool) -> None:
         """Pull the dragged body through the virtual coupler, or carry it.
@@ -230,32 +197,8 @@ class Stage(PlayedStage[Recording]):
         self.picture.pull(tool.translation, self._pull.force, MAX_FORCE)
         return (tool, self._wanted[1]) if number == 0 else (self._wanted[0], tool)
 
-    def _drag(self, number: int, wxyz: Any, position: Any, *, held: bool = False) -> None:
-        self._held = number if held else None
-        if not self._by_hand:
-            self._take_in_hand()
-        poses = list(self._wanted)
-        poses[number] = placed(wxyz, position, self.picture.planar)
-        self._wanted = poses[0], poses[1]
-        self.panel.strayed(True)
-
-    def _take_in_hand(self) -> None:
-        """Go from the motion to the hand, where the motion stands."""
-        if self.player is not None:
-            self.player.playing = False
-            self.panel.plays(self.player)
-            self.pair.restart(of_frame(self.player.recording, self.player.frame).poses)
-            self._wanted = self.pair.poses
-        self.panel.forget()
-        self._by_hand, self._clock = True, 0.0
-
-    def _play_on(self) -> None:
-        """Go from the hand to the motion."""
-        if self._by_hand:
-            self._let_go()
-            self._by_hand, self._held = False, None
-            self.panel.forget()
-            self.panel.strayed(False)
+    def _played(self, player: Player[Recording]) -> tuple[Pose, Pose]:
+        return of_frame(player.recording, player.frame).poses
 
     def _note_switches(self, player: Player[Recording], before: int) -> None:
         for event in player.recording.events:
@@ -270,6 +213,9 @@ class Stage(PlayedStage[Recording]):
         self._show(of_frame(player.recording, player.frame))
         self.panel.plays(player)
 
+    def _show_pair(self) -> None:
+        self._show(of_answer(self.pair.answer, self.pair.poses))
+
     def _show(self, shown: Shown) -> None:
         with self._server.atomic():
             pull = self._pull
@@ -282,18 +228,3 @@ class Stage(PlayedStage[Recording]):
         resolved = self.pair.tracker.resolved_law
         gain = resolved.gain if isinstance(resolved, PaperLaw) else None
         self.panel.law_is(*laws.chosen(self._settings, self._dt), gain)
-
-
-def moving_body(scene: Scene) -> int:
-    """Return the number of the body that a scene moves: 1 where it moves B alone."""
-    still = [isinstance(motion.path, Fixed) for motion in scene.pair_motions]
-    return 1 if still[0] and not still[1] else 0
-
-
-def placed(wxyz: Any, position: Any, planar: bool) -> Pose:
-    """Return the pose of a handle; of a planar pair its part in the plane."""
-    pose = Pose.from_wxyz(np.asarray(wxyz) / np.linalg.norm(wxyz), position)
-    if not planar:
-        return pose
-    turn = np.arctan2(pose.rotation[1, 0], pose.rotation[0, 0])
-    return Pose.exp([0.0, 0.0, turn], [pose.translation[0], pose.translation[1], 0.0])

@@ -55,3 +55,12 @@ the coupler presses in, so that a contact does not flicker."""
 
 MOST_COURSE: Final = 100_000
 """Most frames of a world's motion, so many: tracked before the page opens, at some 0.3 ms each."""
+
+NEAR_MINIMA: Final = 0.3
+"""Distance over the smaller one's size below which a page shows local minima, and down to which it
+follows places of an overlap: those of its own neighbourhood, and so few that a frame takes
+milliseconds."""
+
+FRAME_EVALUATIONS: Final = 200_000
+"""Most evaluations of a frame of solids, so many: some tenths of a second, after which the page
+answers a hand again, and goes on with the next frame from there."""

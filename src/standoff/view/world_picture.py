@@ -14,6 +14,7 @@ from standoff.view.gap_colours import gap_colours
 from standoff.view.nodes import COLOURS, AnswerNodes, BodyNodes, Colour, quaternion
 from standoff.view.picture import FIRM, GRIP, Aimable, aim_all
 from standoff.view.readout import beside
+from standoff.view.segments import Segments
 from standoff.view.shapes import Shape, shape_of
 from standoff.view.tolerances import SEEN_INTO
 from standoff.view.world_readout import closest_text
@@ -219,7 +220,7 @@ class _Drawn:
             nodes.glass(on)
 
 
-class PairLines:
+class PairLines(Segments):
     """Lines between the witness points of near pairs; the closest one's is thicker.
 
     Parameters
@@ -228,8 +229,7 @@ class PairLines:
     """
 
     def __init__(self, scene: Any) -> None:
-        self._scene = scene
-        self._nodes: dict[str, Any] = {}
+        super().__init__(scene, "/pairs")
         self.ends: Array = np.zeros((0, 2, 3))
 
     def show(self, answer: WorldAnswer, end: float) -> None:
@@ -241,20 +241,5 @@ class PairLines:
         rows = known[np.argsort(gaps[known], kind="stable")][:MOST_LINES]
         self.ends = ends[rows]
         colours = np.repeat(gap_colours(gaps[rows], end)[:, None], 2, axis=1)
-        self._draw("near", self.ends[1:], colours[1:], LINE)
-        self._draw("closest", self.ends[:1], colours[:1], CLOSEST_LINE)
-
-    def _draw(self, name: str, ends: Array, colours: Any, width: float) -> None:
-        node = self._nodes.get(name)
-        if node is not None and len(node.points) != len(ends):
-            self._nodes.pop(name).remove()
-            node = None
-        if not len(ends):
-            return
-        points = ends.astype(np.float32)
-        if node is None:
-            self._nodes[name] = self._scene.add_line_segments(
-                f"/pairs/{name}", points, colours, thickness=width, thickness_units="screen"
-            )
-            return
-        node.points, node.colors = points, colours
+        self.draw("near", self.ends[1:], colours[1:], LINE)
+        self.draw("closest", self.ends[:1], colours[:1], CLOSEST_LINE)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from standoff.tracking import Status
 from standoff.view.clearance_matrix import matrix_picture
 from standoff.view.moving_world import Course, LiveWorld, MovingWorld, course_of, known_of
+from standoff.view.pair_stage import placed
 from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player
 from standoff.view.server import name_tab
-from standoff.view.stage import placed
 from standoff.view.world_panel import WorldPanel
 from standoff.view.world_picture import WorldPicture
 from standoff.view.world_readout import world_readout

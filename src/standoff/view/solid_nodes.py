@@ -1,0 +1,179 @@
+"""The local minima of two solids, and the places where they overlap, as nodes of viser's scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.solids.answer import NearestPair, SolidProximity
+from standoff.view.nodes import ARROW, BOUND_COLOUR, WITNESS_COLOUR, WITNESS_RADIUS, Colour
+from standoff.view.segments import Segments
+
+Array = NDArray[np.float64]
+
+OVERLAP_COLOUR: Colour = (190, 0, 110)
+"""Of places in overlap: like neither body, nor the normals, nor what is apart."""
+
+PATCH_COLOUR: Colour = (110, 50, 190)
+"""Of patches of minima that are apart, which may lie along the edges of both."""
+
+END_COLOUR: Colour = (120, 90, 160)
+"""Of the pairs at the ends of a continuum."""
+
+LINE, NEAREST_LINE, PATCH_LINE, END_LINE, SHAFT = 2.0, 5.0, 2.5, 1.5, 2.0
+"""Thickness of lines [pixels]."""
+
+MOST_DRAWN = 200
+"""Minima that are drawn: of more, the nearest."""
+
+LABELLED = 16
+"""Minima with their keys beside them: more would hide each other."""
+
+POINT, NEAREST_POINT = 1.4 * WITNESS_RADIUS, 2.4 * WITNESS_RADIUS
+"""Diameter of the points of a minimum, and of those of the nearest, over the scene's size."""
+
+
+class MinimaNodes:
+    """Of each minimum its two points, the line between them, its normal and its patch; of the
+    nearest in larger size, with its distance.
+
+    Parameters
+    ----------
+    scene : viser.SceneApi
+    size : float
+        Of the scene [length].
+    """
+
+    def __init__(self, scene: Any, size: float) -> None:
+        self._scene, self._size = scene, size
+        scene.add_frame("/minima", show_axes=False)
+        self._lines = Segments(scene, "/minima")
+        self._clouds: dict[str, Any] = {}
+        self._labels: list[Any] = []
+        self._label = scene.add_label("/minima/label", "", anchor="bottom-left")
+        self._ball = scene.add_icosphere(
+            "/minima/ball", 1.0, OVERLAP_COLOUR, opacity=0.5, visible=False
+        )
+
+    def show(self, answer: SolidProximity, text: str) -> None:
+        """Draw what an answer tells; `text` stands beside the nearest minimum."""
+        minima = drawn_minima(answer)
+        ends = np.array([(m.point_a, m.point_b) for m in minima]).reshape(-1, 2, 3)
+        colours = np.array(
+            [OVERLAP_COLOUR if m.distance < 0.0 else WITNESS_COLOUR for m in minima],
+            dtype=np.uint8,
+        ).reshape(-1, 3)
+        along = np.repeat(colours[:, None], 2, axis=1)
+        self._lines.draw("others", ends[1:], along[1:], LINE)
+        self._lines.draw("nearest", ends[:1], along[:1], NEAREST_LINE)
+        self._points("others", ends[1:], along[1:], POINT)
+        self._points("nearest", ends[:1], along[:1], NEAREST_POINT)
+        self._normals(minima)
+        outlines = [
+            (outline_of(m), OVERLAP_COLOUR if m.distance < 0.0 else PATCH_COLOUR) for m in minima
+        ]
+        self._plain("patches", outlines, PATCH_LINE)
+        self._continuum(answer)
+        self._show_ball(answer)
+        self._write(minima, ends, text)
+
+    def _normals(self, minima: Sequence[NearestPair]) -> None:
+        """From A's point on; pieces of line, as arrows would each be a mesh of its own size."""
+        shafts = []
+        for number, m in enumerate(minima):
+            length = ARROW * self._size * (1.0 if number == 0 else 0.5)
+            shafts.append(_arrow(m.point_a, m.normal, length))
+        self._plain("normals", [(each, BOUND_COLOUR) for each in shafts], SHAFT)
+
+    def _continuum(self, answer: SolidProximity) -> None:
+        ends = () if answer.continuum is None else answer.continuum.ends
+        pairs = np.array(ends).reshape(-1, 2, 3)
+        if answer.continuum is not None and answer.continuum.kind == "line" and len(pairs):
+            pairs = np.concatenate([pairs, pairs.transpose(1, 0, 2)])
+        self._plain("ends", [(pairs, END_COLOUR)], END_LINE)
+
+    def _show_ball(self, answer: SolidProximity) -> None:
+        """The ball inside both, where no place of an overlap is told."""
+        overlap = answer.overlap
+        shown = overlap is not None and not answer.minima and overlap.radius > 0.0
+        self._ball.visible = shown
+        if shown and overlap is not None:
+            self._ball.position = tuple(overlap.common_point)
+            self._ball.scale = float(overlap.radius)
+
+    def _write(self, minima: Sequence[NearestPair], ends: Array, text: str) -> None:
+        middles = ends.mean(axis=1)
+        self._label.visible = bool(len(minima))
+        self._label.text = text
+        if len(minima):
+            self._label.position = tuple(middles[0])
+        keyed = [k for k in range(1, min(len(minima), LABELLED)) if minima[k].key >= 0]
+        while len(self._labels) < len(keyed):
+            name = f"/minima/key_{len(self._labels)}"
+            self._labels.append(self._scene.add_label(name, "", anchor="top-right"))
+        for label in self._labels[len(keyed) :]:
+            label.visible = False
+        for label, k in zip(self._labels, keyed, strict=False):
+            label.text, label.visible = f"#{minima[k].key}", True
+            label.position = tuple(middles[k])
+
+    def _plain(self, name: str, groups: Sequence[tuple[Array, Any]], width: float) -> None:
+        """Draw groups of pieces of line (n, 2, 3), each in a colour of its own."""
+        pieces = [np.zeros((0, 2, 3)), *(each for each, _ in groups)]
+        colours = [np.zeros((0, 2, 3), dtype=np.uint8)]
+        for each, colour in groups:
+            colours.append(np.broadcast_to(np.asarray(colour, np.uint8), (len(each), 2, 3)))
+        self._lines.draw(name, np.concatenate(pieces), np.concatenate(colours), width)
+
+    def _points(self, name: str, ends: Array, colours: Any, share: float) -> None:
+        node = self._clouds.get(name)
+        points = ends.reshape(-1, 3).astype(np.float32)
+        if node is not None and len(node.points) != len(points):
+            self._clouds.pop(name).remove()
+            node = None
+        if not len(points):
+            return
+        if node is None:
+            self._clouds[name] = self._scene.add_point_cloud(
+                f"/minima/points_{name}",
+                points,
+                colours.reshape(-1, 3),
+                point_size=share * self._size,
+                point_shape="circle",
+                precision="float32",
+            )
+            return
+        node.points, node.colors = points, colours.reshape(-1, 3)
+
+
+def drawn_minima(answer: SolidProximity) -> tuple[NearestPair, ...]:
+    """Return the minima of an answer that are drawn, the nearest first."""
+    known = (m for m in answer.minima if np.isfinite([*m.point_a, *m.point_b, *m.normal]).all())
+    return tuple(known)[:MOST_DRAWN]
+
+
+def outline_of(minimum: NearestPair) -> Array:
+    """Return the pieces of line around a minimum's patch on both solids, (n, 2, 3); none of a patch
+    of one pair."""
+    pairs = np.array(minimum.patch).reshape(-1, 2, 3)
+    if len(pairs) < 2:
+        return np.zeros((0, 2, 3))
+    sides = [
+        np.stack([side, np.roll(side, -1, axis=0)], axis=1) for side in np.moveaxis(pairs, 1, 0)
+    ]
+    return np.concatenate(sides)
+
+
+def _arrow(start: Array, direction: Array, length: float) -> Array:
+    """A shaft and two pairs of barbs, (5, 2, 3)."""
+    tip = start + length * direction
+    aside = np.eye(3)[np.abs(direction).argmin()]
+    first = np.cross(direction, aside)
+    first /= np.linalg.norm(first)
+    second = np.cross(direction, first)
+    back = tip - 0.2 * length * direction
+    barbs = [(tip, back + 0.08 * length * side) for side in (first, -first, second, -second)]
+    return np.array([(start, tip), *barbs])

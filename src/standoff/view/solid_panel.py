@@ -1,0 +1,60 @@
+"""The panel of a pair of solids: numbers, plot, all minima, and what a user can ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from standoff.solids.answer import SolidProximity
+from standoff.view.live_solids import known_of
+from standoff.view.pair_panel import Hands, PairPanel
+from standoff.view.solid_readout import minima_list, solid_readout
+
+
+class Asks(Hands, Protocol):
+    """What a user of the page can ask for."""
+
+    def glass(self, on: bool) -> None: ...
+
+
+class SolidPanel(PairPanel):
+    """All elements of the panel.
+
+    Parameters
+    ----------
+    server : viser.ViserServer
+    later : callable
+        Takes what is to be done in the page's thread.
+    asks : Asks
+    """
+
+    def __init__(
+        self, server: Any, later: Callable[[Callable[[], None]], None], asks: Asks
+    ) -> None:
+        super().__init__(server, later, asks)
+        tabs = server.gui.add_tab_group()
+        with tabs.add_tab("Move"):
+            self._make_playing()
+            self._make_hand()
+            self._make_glass(asks)
+        with tabs.add_tab("Minima"):
+            self._minima = server.gui.add_html("")
+
+    def _make_glass(self, asks: Asks) -> None:
+        self._glass = self._gui.add_checkbox("as if of glass", True)
+
+        @self._glass.on_update
+        async def _(event: Any) -> None:
+            on = bool(event.target.value)
+            if event.client is not None:
+                self._later(lambda: asks.glass(on))
+
+    def show(self, answer: SolidProximity) -> None:
+        """Show the numbers of an answer."""
+        self._readout.content = solid_readout(answer, self._names, self._unit, self._size)
+        self._minima.content = minima_list(answer, self._unit)
+        self._plot.stands(known_of(answer))
+
+    def traces(self, time: float, answer: SolidProximity) -> None:
+        """Add an instant of solids that are moved by hand to the plot."""
+        self._plot.traces(time, known_of(answer))
