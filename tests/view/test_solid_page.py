@@ -13,7 +13,7 @@ import pytest
 from browsing import drag, opened, until
 
 import standoff as so
-from families.solid_shapes import prism, tube
+from families.solid_shapes import peg, prism, tube
 from standoff.cli.entry import main
 from standoff.geometry import ConicArc
 from standoff.motion import Pose
@@ -27,7 +27,7 @@ pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
 from standoff.view.nodes import WITNESS_COLOUR
 from standoff.view.page import Page
 from standoff.view.served import ServedPage
-from standoff.view.solid_nodes import OVERLAP_COLOUR, PATCH_COLOUR
+from standoff.view.solid_nodes import OVERLAP_COLOUR, PATCH_COLOUR, drawn_minima
 from standoff.view.solid_page import SolidPage
 from standoff.view.solid_readout import minima_list, solid_beside, solid_readout, solid_verdict
 
@@ -105,6 +105,19 @@ def test_every_minimum_is_drawn_where_the_closed_form_has_it(page: Any) -> None:
     keys = [m.key for m in page.stage.pair.answer.minima]
     assert nodes._label.text == f"#{keys[0]}: {heights(0.1)[0]:.4g}"
     assert [label.text for label in nodes._labels] == [f"#{keys[1]}"]
+
+
+def test_another_way_out_is_listed_and_not_drawn() -> None:
+    """A peg beside its hole, a hundredth in the face round the mouth, nearer to that than to the
+    rim over which it could leave."""
+    bush, pin = tube(1.001, 2.0, -2.0, 2.0), peg(1.0, 0.0, 6.0)
+    pair = so.Tracker(bush, pin, minima=0.2)
+    poses = [so.Pose(np.eye(3), [0.05, 0.05, 2.0 + h]) for h in (0.01, -0.01)]
+    _, answer = pair.step(pair.start(so.Pose.identity(), poses[0]), np.eye(4), poses[1])
+    assert [m.felt for m in answer.minima] == [True, False]
+    assert drawn_minima(answer) == answer.minima[:1]
+    assert minima_list(answer, "mm").count("another way out") == 1
+    assert solid_verdict(answer, ("A", "B"), "mm", 1.0) == "overlap in one place, depth 0.01 mm"
 
 
 def test_patches_span_what_is_nearly_as_near(page: Any) -> None:

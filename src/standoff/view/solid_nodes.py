@@ -150,8 +150,10 @@ class MinimaNodes:
 
 
 def drawn_minima(answer: SolidProximity) -> tuple[NearestPair, ...]:
-    """Return the minima of an answer that are drawn, the nearest first."""
-    known = (m for m in answer.minima if np.isfinite([*m.point_a, *m.point_b, *m.normal]).all())
+    """Return the minima of an answer that are drawn, the nearest first: no other ways out of what
+    is drawn."""
+    felt = (m for m in answer.minima if m.felt)
+    known = (m for m in felt if np.isfinite([*m.point_a, *m.point_b, *m.normal]).all())
     return tuple(known)[:MOST_DRAWN]
 
 

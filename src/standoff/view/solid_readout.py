@@ -29,10 +29,12 @@ LISTED = '<tr data-key="{}"><td>#{}</td><td style="white-space:nowrap">{}</td><t
 NONE = '<div style="font-size:.8em;margin:.5em .9em;opacity:.65">{}</div>'
 IN_OVERLAP = f'<span style="color:rgb{OVERLAP_COLOUR}">{{}}</span>'
 
+ANOTHER = ", another way out"
+
 
 def places_of(answer: SolidProximity) -> tuple[NearestPair, ...]:
-    """Return the minima that are places of an overlap."""
-    return tuple(m for m in answer.minima if m.distance < 0.0)
+    """Return the places of an overlap that have come from above 0: others are other ways out."""
+    return tuple(m for m in answer.minima if m.distance < 0.0 and m.felt)
 
 
 def solid_verdict(answer: SolidProximity, names: tuple[str, str], unit: str, size: float) -> str:
@@ -153,6 +155,7 @@ def minima_list(answer: SolidProximity, unit: str) -> str:
         told = escape(length(m.distance, unit, 6))
         shown = IN_OVERLAP.format(told) if m.distance < 0.0 else told
         key = m.key if m.key >= 0 else "–"
+        shown += "" if m.felt else ANOTHER
         rows.append(LISTED.format(m.key, key, shown, m.feature_a, m.feature_b))
     more = len(answer.minima) - MOST_LISTED
     left = NONE.format(f"and {counted(more, 'more', 'more')}") if more > 0 else ""
