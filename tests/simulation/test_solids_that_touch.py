@@ -294,3 +294,18 @@ def test_corners_side_by_side_share_a_spring() -> None:
     expected = 1.0 / (1.0 + left * left)
     for spot in spots:
         assert spot.springs == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_side_that_a_body_slides_in_over_pushes_nothing() -> None:
+    """A box comes on to a plate: its last corners, pressed by the plate's face, pass the plane of
+    its side, and are under that face too, less deep."""
+    box = Solid(so.shapes.box(0.2, 0.2, 0.1))
+    start = so.Pose(np.eye(3), [0.4002, 0.0, 0.09995])
+    moving = so.Twist([-0.2, 0.0, 0.0], [0.0, 0.0, 0.0])
+    law = HuntCrossley(stiffness=1e5, damping=5.0, depth=2e-3)
+    operator = pressed(Solid(PLATE), box, law, pose=start, twist=moving)
+    run = operator.run(operator.start(allow_overlap=True), 20)
+    assert run.positions(1)[-1, 0] < 0.3997
+    assert run.forces[1:, 0, 2].min() > 0.05
+    aside = np.abs(run.forces[1:, 0, 0]) / run.forces[1:, 0, 2]
+    assert aside.max() < 1e-5  # the tilt that the box has come to

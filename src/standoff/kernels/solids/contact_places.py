@@ -42,7 +42,13 @@ from standoff.kernels.solids.spatial_progress import (
     POINTS,
     SIZE,
 )
-from standoff.kernels.solids.spatial_tolerances import ALIKE, FELT_SPARE, ONE_PLACE
+from standoff.kernels.solids.spatial_tolerances import (
+    ALIKE,
+    FELT_SPARE,
+    NEARLY_OPPOSED,
+    ONE_PLACE,
+)
+from standoff.kernels.solids.stationary import is_stationary
 
 # What a place holds: its number; 1 where it is felt; signed distance, normal, and both points.
 P_KEY, P_FELT, P_DISTANCE, P_NORMAL, P_A, P_B = 0, 1, 2, 3, 6, 9
@@ -221,13 +227,22 @@ def is_of_a_line(both, leaves):
 
 
 @kernel
+def is_opposed(both, leaves, minima, o):
+    """Are a common normal's features turned to each other, nearly? A vertex that is under the plane
+    of a face may have come there past its side, pressed by another one."""
+    q = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
+    n = normal_of(minima, o)
+    return is_stationary(both.a, both.b, both.fans[0], both.fans[1], q, leaves, n, NEARLY_OPPOSED)
+
+
+@kernel
 def mark_felt(both, kept, minima, asked, best):
     """Write into the last number of each common normal in overlap whether it is felt, as a spot: at
-    vertices, and at edges that cross or are curved."""
+    vertices, and at edges that cross or are curved, which are turned to what presses them."""
     for i in range(int(best[N_MINIMA])):
         o = MINIMUM_REALS * i
         leaves, d = (int(minima[o + 1]), int(minima[o + 2])), minima[o]
-        spot = d < 0.0 and not is_of_a_line(both, leaves)
+        spot = d < 0.0 and not is_of_a_line(both, leaves) and is_opposed(both, leaves, minima, o)
         felt = spot and is_felt(kept, minima, o, d, asked, best[SIZE])
         minima[o + BOUND] = SPOT if felt else NO_MINIMUM
 

@@ -90,6 +90,10 @@ from one feature to the next, and how deep one may be born."""
 ALIKE: Final = 0.5
 """Cosine, of 60 degrees: normals of one region in which two boundaries overlap; another way out of
 it is farther off."""
+NEARLY_OPPOSED: Final = 0.2
+"""Sine: a vertex or an edge that is pressed beside a place may be tilted by as much away from what
+presses it, far more than a shallow overlap lets it; what is turned away farther is pushed from
+another side."""
 NEARLY_LEVEL: Final = 1e-3
 """Relative, of the sizes and of unit tangents: an error of the contact-regular form below which the
 first steps of its Newton's method may make it so great: a rim that is tilted by 1e-8 has an error
