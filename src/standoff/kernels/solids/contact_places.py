@@ -59,7 +59,7 @@ MOST_PLACES = 64
 S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS = 0, 3, 6, 7, 8
 SPOT_REALS = 9
 MOST_SPOTS = 96
-MOST_ROWS = 4096
+MOST_ROWS = 32768
 # In the place of a common normal's bound, once the places are told: it is felt as a spot.
 SPOT = -2.0
 # Springs that all spots along one normal are worth: those of a square's corners.
