@@ -12,6 +12,7 @@ from standoff.solids import Solid
 
 Corner = tuple[float, float]
 TURN = 2.0 * np.pi
+Z = np.array([0.0, 0.0, 1.0])
 
 
 class Thread(NamedTuple):
@@ -68,16 +69,14 @@ def _threaded(thread: Thread, profile: list[Corner], other: float, turns: int, n
     back = [(other, z) for _, z in profile]
     strips = [_strip(p, q, rise) for side in (profile, back) for p, q in pairwise(side)]
     patches = [
-        strip.transformed(np.eye(3), (0.0, 0.0, thread.pitch * k))
-        for k in range(turns)
-        for strip in strips
+        strip.transformed(np.eye(3), thread.pitch * k * Z) for k in range(turns) for strip in strips
     ]
     for corner, far, k in ((profile[0], back[0], 0), (profile[-1], back[-1], turns - 1)):
         ramp = _strip(corner, far, rise)
-        patches.append(ramp.transformed(np.eye(3), (0.0, 0.0, thread.pitch * k)))
+        patches.append(ramp.transformed(np.eye(3), thread.pitch * k * Z))
     for k in range(len(profile) - 1):
         step = _quad(profile[k], profile[k + 1], back[k + 1], back[k])
-        patches += [step.transformed(np.eye(3), (0.0, 0.0, thread.pitch * i)) for i in (0, turns)]
+        patches += [step.transformed(np.eye(3), thread.pitch * i * Z) for i in (0, turns)]
     return Solid.from_patches(patches, name=name)
 
 
