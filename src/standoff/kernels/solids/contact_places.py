@@ -60,7 +60,7 @@ MOST_PLACES = MOST_SETS
 S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS = 0, 3, 6, 7, 8
 SPOT_REALS = 9
 MOST_SPOTS = 96
-MOST_ROWS = 4096
+MOST_ROWS = 32768
 # Of a common normal that is felt as a spot, once the places are told: this less the number of the
 # minimum that it belongs to stands in that number's place.
 SPOT = -3.0

@@ -1,0 +1,1 @@
+"""Parts of machines: threads, gears, and a key with its lock."""

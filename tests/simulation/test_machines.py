@@ -1,0 +1,90 @@
+"""Machines of solids keep their kinematics: gears their ratio, a nut its pitch."""
+
+from __future__ import annotations
+
+import runpy
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import standoff as so
+from standoff.motion import ConstantTwist
+from standoff.simulation import HuntCrossley, Operator, RigidBody, System, SystemRun
+from standoff.solids import Solid
+from standoff_studies.machines.prisms import extruded
+from standoff_studies.machines.threads import Thread, bolt, nut
+from standoff_studies.soak import solid_parts
+
+GEARS = Path(__file__).parents[2] / "examples" / "planar" / "gears.py"
+
+
+def turned(run: SystemRun) -> np.ndarray:
+    """(n,) radians by which body 1 has turned about the z-axis."""
+    turns = run.rotations(1)
+    angles = np.unwrap(np.arctan2(turns[:, 1, 0], turns[:, 0, 0]))
+    return angles - angles[0]
+
+
+def test_gears_keep_their_ratio() -> None:
+    """Through more than a tooth, on a pin with friction that slows the driven one."""
+    drawn = runpy.run_path(str(GEARS))
+    teeth, thin, play, speed = 12, 2e-3, 2e-5, 20.0
+    outline, base = drawn["involute_gear"](teeth, 1e-3, np.radians(25.0), thin)
+    gear = extruded(outline, 0.0, 5e-3, 4e-3 + play)
+    centres = 1e-3 * teeth
+    turn = drawn["in_mesh"](0.0, teeth, teeth, centres)[1].rotation
+    pin = Solid(solid_parts.bolt(4e-3, 5e-3, 6e-3, 8e-3).boundary)
+    over = so.Pose(so.Pose.exp([np.pi, 0.0, 0.0]).rotation, [centres, 0.0, 6e-3])
+    lifted = so.Pose(np.eye(3), [0.0, 0.0, 5e-4])
+    bodies = [
+        RigidBody.driven(gear, ConstantTwist(lifted, so.Twist([0, 0, 0], [0, 0, speed]))),
+        RigidBody.free(
+            gear, density=7800.0, pose=so.Pose(turn, [centres, 1.5e-5, 1e-6]),
+            twist=so.Twist([0, 0, 0], [0, 0, -speed]),
+        ),
+        RigidBody.fixed(pin, over),
+    ]  # fmt: skip
+    law = HuntCrossley(stiffness=5e5, damping=5.0, friction=0.1, slip_speed=0.05, depth=2e-5)
+    operator = Operator(System(bodies, law, pairs=[(0, 1), (2, 1)]), 1e-4)
+    run = operator.run(operator.start(), 250)
+    behind = base * (turned(run) + speed * run.times)
+    # on the line of action: both flanks' thinning, the play of the bore, and what is pressed
+    assert np.abs(behind).max() < 2.0 * thin * base + play + run.deepest
+    assert run.deepest < 4e-5
+    # as it lands level on the pin's head there are more spots than room, for a tick or two
+    assert run.uncertified <= 5
+    assert run.jumps == 0
+    assert (run.spots[:, 0] > 0).any()
+    assert np.ptp(run.energy.balance) < 0.05 * np.ptp(run.energy.supplied)
+
+
+@pytest.mark.soak
+def test_a_nut_runs_down_its_bolt() -> None:
+    """By its own weight, without friction: its pitch in a turn, as fast as the helix lets it."""
+    thread = Thread(radius=0.01, pitch=0.003, height=0.0015, crest=0.0006, slope=0.5)
+    play = 5e-5
+    start = so.Pose(np.eye(3), [1e-6, 0.0, thread.pitch])
+    bodies = [
+        RigidBody.fixed(bolt(thread, 4, 0.004)),
+        RigidBody.free(nut(thread, 2, 0.015, play), density=7800.0, pose=start),
+    ]
+    law = HuntCrossley(stiffness=1e6, damping=20.0, depth=2e-5)
+    operator = Operator(System(bodies, law), 1e-4)
+    run = operator.run(operator.start(), 4500, 50)
+    turn, moved = turned(run), run.positions(1)[:, 2] - thread.pitch
+    lean = np.hypot(1.0, thread.slope)
+    rise = thread.pitch / (2.0 * np.pi)
+    steep = np.sqrt(1.0 + thread.slope**2 + (rise / (thread.radius - thread.height)) ** 2)
+    assert turn[-1] < -2.5
+    off = moved - thread.climb(turn)
+    assert np.abs(off).max() < lean * play + steep * run.deepest
+    assert run.deepest < 4e-5
+    assert run.uncertified == run.jumps == 0
+    mass = bodies[1].mass_properties
+    assert mass is not None
+    force = mass.mass * 9.81 * rise
+    inertia = mass.inertia[2, 2] + mass.mass * rise**2
+    spin = run.angular_velocities(1)[-1, 2]
+    assert 0.5 * inertia * spin**2 == pytest.approx(-force * turn[-1], rel=0.02)
+    assert np.ptp(run.energy.balance) < 0.01 * np.ptp(run.energy.potential)
