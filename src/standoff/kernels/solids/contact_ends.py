@@ -1,6 +1,6 @@
-"""Ends of the leaves of edges under faces: more spots of a contact that is pressed already.
+"""Ends of the leaves of edges under plane faces: more spots of a contact that is pressed already.
 
-A round rim that lies on a face has no corners. Where it is level its common normals are anywhere
+A round rim that lies on a plane face has no corners. Where it is level its common normals are anywhere
 on it, and where it is hardly tilted there is one, so that the rim would rock. The ends of its
 leaves stay where they are on it, and each is as deep under the face as it is.
 """
@@ -10,6 +10,7 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_minimum import middles_of
 from standoff.kernels.solids.contact_sets import NO_MINIMUM, put_normal
+from standoff.kernels.solids.over_plane import is_plane_leaf
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_minimum import jets_at, nearest
 from standoff.kernels.solids.spatial_pieces import (
@@ -57,9 +58,12 @@ def is_pressed(best, minima):
 
 @kernel
 def keep_end(both, leaves, best, minima, counts):
-    """Keep the end of an edge's leaf under a face's, if it is there; of other leaves nothing."""
+    """Keep the end of an edge's leaf under a plane face's, if it is there; of other leaves nothing:
+    a curved edge is level with a curved face at single points, which are places."""
     dims = dim_of(both.a, leaves[0]), dim_of(both.b, leaves[1])
     if not ((dims[0] == 1 and dims[1] == 2) or (dims[0] == 2 and dims[1] == 1)):
+        return
+    if not (is_plane_leaf(both.a, leaves[0]) or is_plane_leaf(both.b, leaves[1])):
         return
     if is_straight(both.a, leaves[0]) or is_straight(both.b, leaves[1]):  # it has its vertices
         return
