@@ -42,6 +42,7 @@ def formula_body() -> so.Body:
 def tracked(a: so.Body, b: so.Body, law: Any) -> dict[str, Any]:
     tracker = so.Tracker(a, b, law=law)
     state = tracker.start(np.eye(4), AWAY, so.Twist.zero(), so.Twist.zero())
+    _, answers = tracker.run(state, np.eye(4), np.stack([AWAY.matrix] * 2))
     state, answer = tracker.step(state, np.eye(4), AWAY, so.Twist.zero(), so.Twist.zero())
     return {
         "tracker": tracker,
@@ -49,6 +50,8 @@ def tracked(a: so.Body, b: so.Body, law: Any) -> dict[str, Any]:
         "answer": answer,
         "buffer": tracker.buffer(state),
         "witness set": answer.witness_set(),
+        "patch": answer.patch(1e-3),
+        "patches": answers.patches(1e-3),
         "all": {"tracker": tracker, "states": [state, (state,)]},
     }
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
         End,
     )
     from standoff.tracking.cold_query import distance
+    from standoff.tracking.contact.patches import Patch, Patches
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.derivatives import DerivativeArrays, Derivatives, Smoothness
     from standoff.tracking.feedback import max_gain
@@ -44,6 +45,7 @@ else:
             ),
             "standoff.tracking.cold_query": ("distance",),
             "standoff.tracking.many_distances": ("Distances", "distances"),
+            "standoff.tracking.contact.patches": ("Patch", "Patches"),
             "standoff.tracking.contact.witness_set": (
                 "WitnessSet",
                 "witness_set",
@@ -94,6 +96,8 @@ __all__ = [
     "FrameBuffer",
     "PairSystem",
     "PaperLaw",
+    "Patch",
+    "Patches",
     "PredictorCorrector",
     "Proximity",
     "Smoothness",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from abc import abstractmethod
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,9 @@ from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.rows import AnswerRows
 from standoff.tracking.status import BY_NUMBER, Status
 from standoff.wording import counted, short_name
+
+if TYPE_CHECKING:
+    from standoff.tracking.contact.patches import Patch, Patches
 
 Array = NDArray[np.float64]
 
@@ -126,6 +129,27 @@ class Answers(AnswerArrays):
     def events(self) -> tuple[Event, ...]:
         """The switches of all frames, in their order."""
         return tuple(event for answer in self for event in answer.events)
+
+    def patches(self, gap: float, after: Patch | None = None) -> Patches:
+        """The patch of each frame as ``Proximity.patch`` has it, each after that of the frame
+        before, in one compiled loop.
+
+        Parameters
+        ----------
+        gap : float
+            By how much the gap along the normal may be wider than the distance, length.
+        after : Patch, optional
+            That of the frame before the first.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``Proximity.patch``, but for a frame without a distance: it has no pairs.
+        """
+        from standoff.tracking.contact.patches import N_POSES, patches_of
+
+        poses = self.blocks[:, K.BLOCK_MOTION + K.POSE_A :][:, :N_POSES].copy()
+        return patches_of((self._a, self._b), self.blocks, poses, gap, keeping=True, after=after)
 
     def __len__(self) -> int:
         return len(self.blocks)

@@ -18,6 +18,7 @@ from standoff.tracking.rows import Answer
 from standoff.tracking.rows import Counts as Counts
 
 if TYPE_CHECKING:
+    from standoff.tracking.contact.patches import Patch
     from standoff.tracking.contact.witness_set import WitnessSet
     from standoff.tracking.derivatives import Derivatives
 
@@ -130,6 +131,29 @@ class Proximity(Answer, PlainData):
         from standoff.tracking.contact.witness_set import witness_set
 
         return witness_set(self)
+
+    def patch(self, gap: float, after: Patch | None = None) -> Patch:
+        """Up to four pairs of points that span where the bodies are hardly farther apart
+        (docs/touching.md). Computed at each call.
+
+        Parameters
+        ----------
+        gap : float
+            By how much the gap along the normal may be wider than the distance, length.
+        after : Patch, optional
+            That of the frame before: its corners are gone on with, wherever they are still some.
+
+        Raises
+        ------
+        TypeError
+            ``after`` is not a patch.
+        ValueError
+            ``gap`` is not positive; an answer that is FAR, or without a distance or poses.
+        """
+        self._refuse_far()
+        from standoff.tracking.contact.patches import patch_of
+
+        return patch_of(self, gap, after)
 
     @property
     def unique(self) -> bool:

@@ -39,6 +39,7 @@ WORK = {
     "runs": Work("runs of many frames", 1, 2, 1),
     "paper": Work("frames of the paper's law", 8, 25, 2),
     "derivatives": Work("derivatives by the poses", 3, 25, 3),
+    "patches": Work("patches of bodies", 5, 25, 2),
     "simulation": Work("simulations of bodies", 30, 60, 2),
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 25, 60, 3),

@@ -19,6 +19,7 @@ MODULES = (
     "standoff.kernels.entries.paper_laws",
     "standoff.kernels.entries.batch",
     "standoff.kernels.entries.derivatives",
+    "standoff.kernels.entries.patches",
     "standoff.kernels.entries.smooth",
     "standoff.kernels.entries.simulation",
     "standoff.kernels.entries.servo",

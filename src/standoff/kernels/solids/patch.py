@@ -1,8 +1,9 @@
 """The patch of a local minimum: a few pairs of points that span where the gap is hardly wider."""
 
-from math import atan2, inf, sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
+from standoff.kernels.algebra.corners import CORNER_REALS, ROW, X, Y, outside, put_around
 from standoff.kernels.algebra.frames import frame_across
 from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
@@ -24,8 +25,7 @@ from standoff.kernels.solids.spatial_progress import (
 )
 from standoff.kernels.solids.spatial_tolerances import ONE_PATCH, ONE_PLACE
 
-# Of a pair of a patch: where it is across the normal, and the number of its row; at most four.
-X, Y, ROW, CORNER_REALS = 0, 1, 2, 3
+# Of a patch: so many pairs at most, each a corner across the normal.
 MOST_CORNERS = 4
 ALL_CORNERS = CORNER_REALS * MOST_CORNERS
 
@@ -61,45 +61,6 @@ def nearest_set(minima, o, sets, n):
         if away < least:
             least, found = away, k
     return found
-
-
-@kernel
-def outside(corners, n, x, y):
-    """How far a point is from a point, from a segment, or outside of a convex polygon whose corners
-    run counterclockwise; below 0: inside."""
-    dx, dy = x - corners[X], y - corners[Y]
-    if n == 1:
-        return sqrt(dx * dx + dy * dy)
-    most, across = -inf, 0.0
-    for k in range(n):
-        o, p = CORNER_REALS * k, CORNER_REALS * ((k + 1) % n)
-        tx, ty = corners[p + X] - corners[o + X], corners[p + Y] - corners[o + Y]
-        length = sqrt(tx * tx + ty * ty)
-        dx, dy = x - corners[o + X], y - corners[o + Y]
-        off = (dx * ty - dy * tx) / length
-        if n == 2:
-            across = max(across, abs(off))
-            off = -(dx * tx + dy * ty) / length
-        most = max(most, off)
-    return max(most, across) if n == 2 else most
-
-
-@kernel
-def put_around(corners, n):
-    """Corners in their order around their middle, counterclockwise."""
-    mx, my = 0.0, 0.0
-    for k in range(n):
-        mx, my = mx + corners[CORNER_REALS * k + X] / n, my + corners[CORNER_REALS * k + Y] / n
-    for i in range(1, n):
-        k = i
-        while k > 0:
-            o, p = CORNER_REALS * k, CORNER_REALS * (k - 1)
-            later = atan2(corners[o + Y] - my, corners[o + X] - mx)
-            if later >= atan2(corners[p + Y] - my, corners[p + X] - mx):
-                break
-            for j in range(CORNER_REALS):
-                corners[o + j], corners[p + j] = corners[p + j], corners[o + j]
-            k -= 1
 
 
 @kernel
