@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import FaceMesh, edge_lines, face_meshes
 from standoff.view.tolerances import LIFT
+from standoff.world.shapes import boundary_of
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -34,7 +36,7 @@ class Shape:
 
     Attributes
     ----------
-    body : Body
+    body : Body or Boundary
     skin : Mesh or None
         The whole surface; None of a planar body, and of a point or segment without a radius.
     faces : dict of int to Mesh
@@ -50,7 +52,7 @@ class Shape:
         Of that box.
     """
 
-    body: Body
+    body: Body | Boundary
     skin: Mesh | None
     faces: dict[int, Mesh]
     edges: dict[int, Array]
@@ -76,17 +78,19 @@ class Shape:
         return point
 
 
-def shape_of(body: Body) -> Shape:
+def shape_of(given: Any) -> Shape:
     """Return what is shown of a body.
 
     Parameters
     ----------
-    body : Body
+    given : Body or Solid
+        Of a solid that need not be convex its boundary is shown.
 
     Returns
     -------
     Shape
     """
+    body = boundary_of(given)
     meshes, lines = face_meshes(body, fine=True), edge_lines(body)
     vertices = np.asarray(body.vertex_points, dtype=float).reshape(-1, 3)
     cloud = [vertices, *(line.points for line in lines), *(mesh.points for mesh in meshes)]

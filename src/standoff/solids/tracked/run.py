@@ -13,15 +13,16 @@ from standoff.kernels.entries import tracked_solids as T
 from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import POINTS
 from standoff.motion import Pose
+from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.distance import inside_of, senses_of
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.tracked.answers import SolidAnswers, world_places
+from standoff.solids.tracked.answers import Places, SolidAnswers, world_places
 from standoff.solids.tracked.asks import Asks, numbered
-from standoff.solids.tracked.events import Course, LocalMinima, MinimumEvent, events_of, minima_of
+from standoff.solids.tracked.events import Course, events_of, features_at, minima_of
 from standoff.solids.tracked.front import NO_ROWS, Frames, Front, moved_by, room_for
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
@@ -55,12 +56,44 @@ class Run:
 
     def answers(self) -> tuple[SolidState, SolidAnswers]:
         front = self._through()
+        answers = self._all_answers()
+        return self._state(answers[len(answers) - 1], front), answers
+
+    def of_state(self) -> SolidAnswers:
+        """The answer of the state, at whose poses the only frame is."""
+        self.special[0] = self.state.proximity
+        self.told[0, T.MOTION] = np.nan
+        return self._all_answers()
+
+    def _all_answers(self) -> SolidAnswers:
         slack = self.asks.a.slack + self.asks.b.slack
         statuses = np.array([_status(inside) for inside in self.inside], dtype=object)
         places = world_places(self.told, self.a)
         plain = statuses, slack
-        answers = SolidAnswers(self.told, places, self.special, plain, self._made, self.minima_told)
-        return self._state(answers[len(answers) - 1], front), answers
+        later = self._made, self.minima_told, self.places_told
+        return SolidAnswers(self.told, places, self.special, plain, *later)
+
+    def places_told(self) -> Places:
+        """The features and parameters of the witness points of all frames."""
+        at = self.told[:, T.LEAVES : T.PARAMETERS + 4].copy()
+        rows, first = self._all_minima()
+        has = np.flatnonzero(np.diff(first))
+        at[has] = rows[first[has], 1:7]  # as a point of a face may be told as one of its edge
+        solids, found, values = (self.asks.a, self.asks.b), list[Any](), list[Array]()
+        for side, solid in enumerate(solids):
+            leaves, own = at[:, side], at[:, 2 + 2 * side : 4 + 2 * side]
+            features, parameters = features_at(solid, leaves), np.full((len(leaves), 3), np.nan)
+            for k, row in enumerate(own):
+                if k not in self.special:
+                    given = solid.parameters_of(int(leaves[k]), row)
+                    parameters[k, : len(given)] = given
+            for k, answer in self.special.items():
+                features[k] = (answer.feature_a, answer.feature_b)[side]
+                given = (answer.parameters_a, answer.parameters_b)[side]
+                parameters[k, : len(given)] = given
+            found.append(features)
+            values.append(parameters)
+        return Places(*found, *values)
 
     def minima_told(self) -> tuple[LocalMinima, tuple[MinimumEvent, ...]]:
         """The local minima of all frames, and what becomes of them.
