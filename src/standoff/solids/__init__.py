@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from standoff.solids.spatial.self_intersections import SelfIntersection, SelfIntersections
     from standoff.solids.spatial.solid import Solid
     from standoff.solids.tracked.answers import SolidAnswers
+    from standoff.solids.tracked.frame_buffer import SolidFrameBuffer
     from standoff.solids.tracked.state import SolidState
     from standoff.solids.tracked.tracker import SolidTracker
 else:
@@ -48,6 +49,7 @@ else:
             ),
             "standoff.solids.spatial.solid": ("Solid",),
             "standoff.solids.tracked.answers": ("SolidAnswers",),
+            "standoff.solids.tracked.frame_buffer": ("SolidFrameBuffer",),
             "standoff.solids.tracked.state": ("SolidState",),
             "standoff.solids.tracked.tracker": ("SolidTracker",),
         },
@@ -67,6 +69,7 @@ __all__ = [
     "Solid",
     "SolidAnswers",
     "SolidCounts",
+    "SolidFrameBuffer",
     "SolidProximity",
     "SolidState",
     "SolidTracker",

@@ -22,6 +22,7 @@ from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import NEAREST_ALONE
 from standoff.solids.tracked.answers import SolidAnswers
 from standoff.solids.tracked.asks import Asks
+from standoff.solids.tracked.frame_buffer import SolidFrameBuffer
 from standoff.solids.tracked.front import Frames, Front
 from standoff.solids.tracked.run import Run
 from standoff.solids.tracked.state import SolidState
@@ -142,6 +143,62 @@ class SolidTracker(KeepsReadOnly):
         self._check(state)
         a, b = _row(Pose.of(pose_a)), _row(Pose.of(pose_b))
         return Run(self._asks, state, a, b).single()
+
+    def buffer(self, state: SolidState) -> SolidFrameBuffer:
+        """Arrays for ``step_into`` that begin at a state.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``step``.
+        """
+        self._check(state)
+        return SolidFrameBuffer(self._asks, state)
+
+    def step_into(
+        self,
+        buffer: SolidFrameBuffer,
+        pose_a: PoseLike | None = None,
+        pose_b: PoseLike | None = None,
+    ) -> float:
+        """One frame in place, for loops that must not allocate.
+
+        ``buffer.distance``, ``lower_bound``, ``upper_bound``, ``normal``, ``point_a``, ``point_b``
+        and ``status`` read its answer without making an object. A frame that ties, or in which the
+        solids meet, is made as ``step`` makes it.
+
+        Parameters
+        ----------
+        buffer : SolidFrameBuffer
+            Of this tracker. Without poses the frame reads ``buffer.pose_a`` and ``pose_b``.
+        pose_a, pose_b : Pose or what ``Pose.of`` reads, optional
+            World poses of the solids' frames. Arrays (4, 4) of float64 are read as they are;
+            anything else is converted first.
+
+        Returns
+        -------
+        float
+            The distance.
+
+        Raises
+        ------
+        StandoffError
+            A buffer of another tracker.
+        ValueError
+            No pose.
+        """
+        if buffer.asks is not self._asks:
+            raise StandoffError(
+                "The buffer belongs to another tracker: make one with tracker.buffer.", "buffer"
+            )
+        if type(pose_a) is type(pose_b) is np.ndarray:
+            if not buffer.put_arrays(pose_a, pose_b):
+                buffer.put(pose_a, pose_b)
+        elif pose_a is not None or pose_b is not None:
+            buffer.put(pose_a, pose_b)  # type: ignore[arg-type]
+        else:
+            buffer.repaired = 0
+        return buffer.step()
 
     def run(
         self, state: SolidState, poses_a: PosesLike, poses_b: PosesLike
