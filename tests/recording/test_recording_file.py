@@ -162,7 +162,7 @@ def test_what_is_no_recording(recordings: list[so.Recording], tmp_path: Path) ->
 
 @pytest.mark.parametrize(
     ("version", "fix"),
-    [(1, "record again"), (5, "install the Standoff"), ("two", "install"), (True, "record again")],
+    [(1, "record again"), (6, "install the Standoff"), ("two", "install"), (True, "record again")],
 )
 def test_another_format_version(
     recordings: list[so.Recording], tmp_path: Path, version: object, fix: str
@@ -170,7 +170,8 @@ def test_another_format_version(
     file = tmp_path / "run.parquet"
     recordings[0].save(file)
     rewritten(file, {"format_version": version})
-    with pytest.raises(ValueError, match=f"version {version!r}.*reads versions 2, 3 and 4: {fix}"):
+    told = f"version {version!r}.*reads versions 2, 3, 4 and 5: {fix}"
+    with pytest.raises(ValueError, match=told):
         so.open_recording(file)
 
 

@@ -35,6 +35,20 @@ NO_FEATURE = Feature("", -1)
 """Of a pair beyond its horizon, which has no witness points."""
 
 
+def feature_told(text: str) -> Feature:
+    """The feature that `str` made a text of.
+
+    Raises
+    ------
+    ValueError
+        It made no such text.
+    """
+    if not text.strip():
+        return NO_FEATURE
+    kind, index = text.split()
+    return Feature(kind, int(index))
+
+
 def feature_of(body: Body, number: int) -> Feature:
     """The feature of a packed number: faces first, then edges, then vertices; of a negative one,
     which stands for none, an empty kind and -1."""

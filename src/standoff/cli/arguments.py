@@ -19,6 +19,7 @@ from standoff.cli.option_groups import (
     NO_FILES,
     NO_FLAGS,
     NO_PAPER_FLAGS,
+    NO_SOLID_FLAGS,
     OWN_FRAMES,
     WHOLE_SPAN,
     FileFlags,
@@ -27,6 +28,7 @@ from standoff.cli.option_groups import (
     PaperFlags,
     ReportFlags,
     SceneFile,
+    SolidFlags,
     SpanFlags,
     group,
 )
@@ -56,6 +58,7 @@ class TrackCommand:
     paper_options: Annotated[
         PaperFlags, group("paper law", "For the paper's law alone; overrides the scene's own.")
     ] = NO_PAPER_FLAGS
+    solid_options: Annotated[SolidFlags, group("solids")] = NO_SOLID_FLAGS
 
 
 @dataclass(frozen=True)

@@ -127,6 +127,22 @@ def event_facts(events: Iterable[RecordedEvent]) -> list[dict[str, Any]]:
     ]
 
 
+def _minima_facts(recording: Recording) -> dict[str, Any]:
+    """Return what becomes of local minima, where they were asked for."""
+    if recording.minima is None:
+        return {}
+    told = [
+        event._asdict()
+        | {
+            "time": float(recording.time[event.frame]),
+            "features": [str(feature) for feature in event.features],
+            "reason": None if event.reason is None else event.reason.name,
+        }
+        for event in recording.minima_events
+    ]
+    return {"minima_events": told}
+
+
 def recording_facts(
     scene: Scene, settings: TrackSettings, recording: Recording, written: Sequence[Path]
 ) -> dict[str, Any]:
@@ -145,5 +161,6 @@ def recording_facts(
         "statuses": {status.name: n for status, n in recording.status_frames().items()},
         "counts": recording.total_counts()._asdict(),
         "events": event_facts(recording.events),
+        **_minima_facts(recording),
         "files": [str(path) for path in written],
     }

@@ -59,6 +59,14 @@ NO_FLAGS, NO_PAPER_FLAGS = LawFlags(), PaperFlags()
 
 
 @dataclass(frozen=True)
+class SolidFlags:
+    """For pairs with a solid that need not be convex; overrides the scene's own."""
+
+    minima: Annotated[str | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Keep all local minima of the distance below this one, in the scene's unit."""
+
+
+@dataclass(frozen=True)
 class ReportFlags:
     """How the result is printed."""
 
@@ -112,6 +120,7 @@ SceneFile = Annotated[Positional[Path], arg(metavar="SCENE.toml")]
 
 NO_FILES, AS_USUAL = FileFlags(), ReportFlags()
 WHOLE_SPAN, OWN_FRAMES = SpanFlags(), FrameFlags()
+NO_SOLID_FLAGS = SolidFlags()
 """What holds where no option of a group is given."""
 
 

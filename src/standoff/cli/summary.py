@@ -11,10 +11,12 @@ import numpy as np
 from standoff.bodies.plain_data import without_roundoff
 from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
+from standoff.recording.local_minima import MinimumEvent
 from standoff.scene import Scene
 from standoff.scene.reader import Array
 from standoff.solids.answer import SolidCounts, SolidProximity
 from standoff.tracking import Counts, Proximity, Status
+from standoff.tracking.branches import NONE
 from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
 from standoff.tracking.laws import LAWS, PredictorCorrector
@@ -131,7 +133,7 @@ def recording_lines(
     return [
         *_scene_lines(scene),
         *(line("", note) for note in scene.notes),
-        line("law", _law_text(recording)),
+        *([] if recording.info.of_solids else [line("law", _law_text(recording))]),
         line("frames", frames_text(recording.time)),
         line("closest", _closest_text(scene, recording)),
         line("certified", f"{certified} of {counted(frames, 'frame')}, {share}, {tolerance}"),
@@ -139,6 +141,7 @@ def recording_lines(
         line("worst gap", _gap_text(scene, recording)),
         line("work", _work(recording.total_counts(), verbose=verbose)),
         *_event_lines(scene, recording.events),
+        *_minima_lines(scene, recording),
         *(line("wrote" if k == 0 else "", str(path)) for k, path in enumerate(written)),
     ]
 
@@ -258,6 +261,33 @@ def _event_lines(scene: Scene, events: Sequence[RecordedEvent]) -> list[str]:
         for event in events[:FIRST_EVENTS]
     )
     return [*lines, *(line("", text) for text in told)]
+
+
+def _minima_lines(scene: Scene, recording: Recording) -> list[str]:
+    """How many local minima there were, and the first of their births, ends and handovers."""
+    if recording.minima is None:
+        return []
+    unit, keys = scene.length_unit, recording.minima.key
+    most = int(np.bincount(recording.minima.frame, minlength=1).max())
+    below = f"below {recording.info.options['minima']:g} {unit}"
+    events = [event for event in recording.minima_events if event.kind != "switch"]
+    more = f", the first {FIRST_EVENTS} events:" if len(events) > FIRST_EVENTS else ":"
+    total = counted(len(np.unique(keys[keys != NONE])), "local minimum", "local minima")
+    told = (
+        f"{time_text(recording.time[event.frame]):<12} {_event_text(event)}, "
+        f"at {event.distance:.6g} {unit}"
+        for event in events[:FIRST_EVENTS]
+    )
+    head = line("minima", f"{total} {below}, {most} at most in a frame{more if events else ''}")
+    return [head, *(line("", text) for text in told)]
+
+
+def _event_text(event: MinimumEvent) -> str:
+    if event.kind == "handover":
+        return f"minimum {event.key} is the nearest, {event.other} was"
+    reason = "" if event.reason is None else f", {event.reason.name}"
+    into = f" into {event.other}" if event.kind == "end" and event.other != NONE else ""
+    return f"minimum {event.key}: {event.kind}{reason}{into}"
 
 
 def vector_text(vector: Array, size: float, digits: int = 9) -> str:

@@ -24,7 +24,8 @@ from standoff.scene import (
     record,
 )
 from standoff.scene.files import toml_tables
-from standoff.view.formats import ENDINGS, writer_of
+from standoff.view.formats import ENDINGS, FILMS, writer_of
+from standoff.world.shapes import is_solid
 
 
 def run_track(command: TrackCommand) -> int:
@@ -97,6 +98,11 @@ class _Run(NamedTuple):
         check_results(self.output, "standoff.recording.file", self.plot, "standoff.recording.plot")
         if self.export is not None:
             check_target(self.export, "--export", ENDINGS)
+            if self.export.suffix.lower() in FILMS and any(map(is_solid, self.scene.pair_shapes)):
+                raise CommandError(
+                    f"--export {self.export}: films draw convex bodies alone, and one body of the "
+                    "pair is a solid that need not be; name a file that ends in .html or .rrd"
+                )
             try:
                 writer_of(self.export)
             except ModuleNotFoundError as error:
@@ -131,7 +137,8 @@ def settings_of(scene: Scene, command: TrackCommand) -> TrackSettings:
         If an option is not one that a scene could have.
     """
     times = vars(command.times)
-    texts = vars(command.options) | vars(command.paper_options) | {"step": times["step"]}
+    texts = vars(command.options) | vars(command.paper_options) | vars(command.solid_options)
+    texts |= {"step": times["step"]}
     given = {name: None if text is None else _value(text) for name, text in texts.items()}
     given |= {"law": command.options.law, "start": times["start"], "duration": times["duration"]}
     try:

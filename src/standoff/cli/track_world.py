@@ -39,6 +39,12 @@ def run_track_world(command: TrackCommand, scene: Scene, settings: TrackSettings
         If the files could not be written after all.
     """
     _check(command)
+    if settings.minima is not None:
+        raise SceneError(
+            "is of a pair, and the scene has a [world] and none: leave it out, or add one",
+            key="track.minima",
+            file=scene.file,
+        )
     output, plot = command.files.output, command.files.plot
     times = scene.times(settings)
     world = scene.world_with(settings=settings, times=times)

@@ -17,7 +17,7 @@ from standoff.bodies.drawing.pair_picture import (
     view_across,
 )
 from standoff.bodies.drawing.solids import solid_of
-from standoff.errors import not_installed
+from standoff.errors import StandoffError, not_installed
 from standoff.recording.recorded import Paths, RecordedFrames
 from standoff.tracking.inputs import flat_pose
 
@@ -51,6 +51,12 @@ def drawing(
     view: tuple[float, float] | None,
 ) -> tuple[Figure, Callable[[int], list[Any]], int]:
     """Return the figure, what draws picture k in it, and the number of pictures."""
+    if recording.info.of_solids:
+        raise StandoffError(
+            "Animations and videos draw convex bodies alone, and one of these is a solid that need "
+            "not be: standoff.view.export.save_page(recording, 'run.html') shows the motion, and "
+            "so.plot an instant of it."
+        )
     count = min(pictures, len(recording))
     chosen = np.unique(np.linspace(0, len(recording) - 1, count).round().astype(int)).tolist()
     frames = [_shown(recording, paths, frame) for frame in chosen]

@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff import parquet
-from standoff.bodies.features import NO_FEATURE, Feature
+from standoff.bodies.features import feature_told
 from standoff.checks.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.errors import StandoffError
 from standoff.nesting import JSON, text_problem, value_problem
 from standoff.parquet import pa, pq
 from standoff.recording.recorded import RecordedEvent, RecordedFrames, RunInfo
+from standoff.recording.stored_minima import minima_columns, minima_in
 from standoff.tracking.law_options import options_of
 from standoff.tracking.laws import LAWS, PaperLaw, every_option
 from standoff.tracking.rows import Counts
@@ -34,7 +35,11 @@ FORMAT_VERSION = 4
 the column `upper_bound` and the options `depth` and `deadline`. 4 since the options are those of
 the law that was followed, and no other's."""
 
-READ_VERSIONS = (2, 3, 4)
+VERSION_OF_SOLIDS = 5
+"""That of a run of solids, whose statuses, options and minima an older Standoff does not know. A
+run of convex bodies stays of a version that it reads."""
+
+READ_VERSIONS = (2, 3, 4, 5)
 """What a file of version 2 does not hold is not made up: its upper bounds are nan, and its options
 have no `depth` and no `deadline`."""
 
@@ -96,7 +101,7 @@ def table_of(recording: RecordedFrames) -> Any:
 def _metadata(info: RunInfo) -> dict[str, Any]:
     return {
         "format": FORMAT,
-        "format_version": FORMAT_VERSION,
+        "format_version": VERSION_OF_SOLIDS if info.of_solids else FORMAT_VERSION,
         "standoff": info.version,
         "title": info.title,
         "a": info.bodies[0],
@@ -122,7 +127,7 @@ def _columns(recording: RecordedFrames) -> dict[str, Any]:
     columns |= {name: getattr(recording, name) for name in NUMBERS}
     for name in VECTORS:
         columns |= {f"{name}_{x}": getattr(recording, name)[:, k] for k, x in enumerate("xyz")}
-    return columns | {
+    columns |= {
         "feature_a": _words(map(str, recording.feature_a)),
         "feature_b": _words(map(str, recording.feature_b)),
         "parameters_a": _parameters(recording.parameters_a),
@@ -132,6 +137,9 @@ def _columns(recording: RecordedFrames) -> dict[str, Any]:
         **{name: recording.counts[:, k] for k, name in enumerate(Counts._fields)},
         "events": _events(recording),
     }
+    if recording.minima is not None:
+        columns |= minima_columns(recording.minima, recording.minima_events, len(recording))
+    return columns
 
 
 def _words(words: Iterable[str]) -> Any:
@@ -262,22 +270,16 @@ def _fields(table: Any, info: RunInfo, version: int) -> dict[str, Any]:
         "normal": vectors("normal"),
         "velocity_a": vectors("velocity_a"),
         "velocity_b": vectors("velocity_b"),
-        "feature_a": _meanings(table["feature_a"].to_pylist(), _feature),
-        "feature_b": _meanings(table["feature_b"].to_pylist(), _feature),
+        "feature_a": _meanings(table["feature_a"].to_pylist(), feature_told),
+        "feature_b": _meanings(table["feature_b"].to_pylist(), feature_told),
         "parameters_a": _filled(table["parameters_a"].to_pylist()),
         "parameters_b": _filled(table["parameters_b"].to_pylist()),
         "status": _meanings(table["status"].to_pylist(), Status.__getitem__),
         "counts": counts.astype(np.int64),
         "events": _events_of(table["events"].to_pylist()),
         "info": info,
+        **minima_in(table),
     }
-
-
-def _feature(text: str) -> Feature:
-    if not text.strip():
-        return NO_FEATURE
-    kind, index = text.split()
-    return Feature(kind, int(index))
 
 
 def _meanings(words: list[str], meaning: Any) -> NDArray[np.object_]:
@@ -298,7 +300,7 @@ def _events_of(rows: list[list[dict[str, Any]]]) -> tuple[RecordedEvent, ...]:
     return tuple(
         RecordedEvent(
             frame,
-            **event | {"source": _feature(event["source"]), "target": _feature(event["target"])},
+            **event | {end: feature_told(event[end]) for end in ("source", "target")},
         )
         for frame, row in enumerate(rows)
         for event in row

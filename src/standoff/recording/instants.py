@@ -50,6 +50,12 @@ MOST_ANSWERS = 1000
 the step switches without end, and its switches are then not located."""
 
 
+def resolution_between(before: float, after: float) -> float:
+    """How finely a switch between two times [s] is dated, s."""
+    spacing = INSTANT_ROUNDINGS * float(np.spacing(max(abs(before), abs(after))))
+    return max(INSTANT_RESOLUTION * (after - before), spacing)
+
+
 class Known(NamedTuple):
     """The answer at one time: its mode is the pair of packed features."""
 
@@ -105,8 +111,7 @@ class Step:
         self.pair = tracker.a, tracker.b
         self.first, self.last = Known(before, state.proximity.row), Known(after, row)
         self.length = after - before
-        spacing = INSTANT_ROUNDINGS * float(np.spacing(max(abs(before), abs(after))))
-        self.resolution = max(INSTANT_RESOLUTION * self.length, spacing)
+        self.resolution = resolution_between(before, after)
         self.paper = isinstance(tracker.law, PaperLaw)
         self.answers = 0
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.errors import not_installed
+from standoff.recording.minima_plot import draw_minima
 from standoff.recording.recorded import RecordedFrames
 
 try:
@@ -158,6 +159,7 @@ def _draw_distance(axes: Axes, times: Array, recording: RecordedFrames) -> None:
         dashes=(4, 4),
         label="certified lower bound",
     )
+    draw_minima(axes, times, recording)
     closest = recording.closest()
     if closest is not None:
         axes.plot(
@@ -192,7 +194,8 @@ def _draw_gap(axes: Axes, times: Array, recording: RecordedFrames) -> None:
     gap, residual = np.maximum(recording.gap, floor), np.maximum(recording.residual, floor)
     good = recording.certified
     bad = ~good & ~np.isnan(gap)
-    axes.plot(times, residual, color=RESIDUAL_COLOUR, linewidth=0.8, label="residual")
+    if not np.isnan(residual).all():  # solids have none
+        axes.plot(times, residual, color=RESIDUAL_COLOUR, linewidth=0.8, label="residual")
     axes.plot(
         *(times[good], gap[good], "."),
         color=GAP_COLOUR,
@@ -216,7 +219,7 @@ def _draw_gap(axes: Axes, times: Array, recording: RecordedFrames) -> None:
 
 def _decades(values: Array) -> tuple[float, float]:
     """Return whole powers of ten around positive values, at least two of them apart."""
-    present = values[~np.isnan(values)]
+    present = values[np.isfinite(values)]
     if not present.size:
         return 1e-16, 1.0
     low = np.floor(np.log10(present.min()))

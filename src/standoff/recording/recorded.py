@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.automaton.visits import Visit
-from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
+from standoff.errors import StandoffError
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
+from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import every_option, law_of_facts
 from standoff.tracking.rows import Counts
@@ -81,7 +82,8 @@ class RunInfo:
         ``Body.digest`` of A and B.
     options : mapping
         ``law``, the law's name; every option of that law, resolved, as plain data with a scene's
-        keys; dt (the longest step, s); locate. A file of a format before 4 may lack some.
+        keys; dt (the longest step, s); locate. A file of a format before 4 may lack some. Of solids
+        there is no law: tolerance, deadline, minima, dt and locate.
     title : str
     length_unit : str
         Label of lengths; empty where none was given.
@@ -104,14 +106,24 @@ class RunInfo:
     repaired: int = 0
 
     @property
+    def of_solids(self) -> bool:
+        """Is one of the two a solid that need not be convex?"""
+        return "law" not in self.options
+
+    @property
     def law(self) -> Law:
         """The law, made again from `options`.
 
         Raises
         ------
         ValueError
-            Its feedback is a program's own, or the file keeps only its text.
+            Its feedback is a program's own, or the file keeps only its text; or the run was of
+            solids, which follow no law.
         """
+        if self.of_solids:
+            raise StandoffError(
+                "This is a run of solids, which follow no law: `options` has what was asked."
+            )
         known = ("law", *every_option())
         return law_of_facts({name: self.options[name] for name in known if name in self.options})
 
@@ -139,8 +151,10 @@ class RecordedFrames(KeepsReadOnly):
     counts: NDArray[np.int64]
     events: tuple[RecordedEvent, ...]
     info: RunInfo
-    pair: tuple[Body, Body] | None = field(default=None, repr=False)
+    pair: tuple[Any, Any] | None = field(default=None, repr=False)
     paths: Paths | None = field(default=None, repr=False)
+    minima: LocalMinima | None = field(default=None, repr=False)
+    minima_events: tuple[MinimumEvent, ...] = field(default=(), repr=False)
 
     def __getstate__(self) -> Any:
         # A path may be a function, which cannot be stored.

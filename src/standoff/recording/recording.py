@@ -44,23 +44,31 @@ class Recording(RecordedFrames):
         s, strictly increasing.
     distance, lower_bound, upper_bound, rate, residual : ndarray, shape (n,)
         As in `Proximity`; nan while overlapping. ``upper_bound`` is nan in all frames of a file
-        of format version 2, which does not hold it.
+        of format version 2, which does not hold it. Of solids as in `SolidProximity`; ``rate`` is
+        nan where the witness points are not unique, ``residual`` always.
     point_a, point_b, normal, velocity_a, velocity_b : ndarray, shape (n, 3)
+        The velocities are nan of solids.
     feature_a, feature_b : ndarray of Feature, shape (n,)
     parameters_a, parameters_b : ndarray, shape (n, 3)
         nan where the feature has fewer parameters.
     status : ndarray of Status, shape (n,)
     counts : ndarray of int, shape (n, 11)
-        Work of each frame, in the order of `Counts`.
+        Work of each frame, in the order of `Counts`; of solids the evaluations, switches and
+        restarts, all else is 0.
     events : tuple of RecordedEvent
         In order of frame and time. Of each body the source of an event is the target of the one
         before.
     info : RunInfo
     pair : (Body, Body) or None
-        A and B; None in a recording opened from a file, which keeps only their digests.
+        A and B, bodies or solids; None in a recording opened from a file, which keeps only their
+        digests.
     paths : (path, path) or None
         Those of A and B, which `animate` asks for poses; None in a recording opened from a file,
         and in a copy or a pickle, because a path may be a function.
+    minima : LocalMinima or None
+        Of solids whose tracker was given ``minima=``: all local minima of all frames.
+    minima_events : tuple of MinimumEvent
+        Which of them begin, end and go to another feature, and when another is the nearest.
     """
 
     @classmethod
@@ -108,7 +116,7 @@ class Recording(RecordedFrames):
         Raises
         ------
         ValueError
-            In a recording opened from a file, which does not hold the bodies.
+            In a recording opened from a file, which does not hold the bodies, or of solids.
         """
         from standoff.automaton.graph import automaton
 
@@ -117,6 +125,11 @@ class Recording(RecordedFrames):
                 "A recording from a file does not hold its bodies: make the pair's with "
                 "standoff.automaton.graph.automaton(a, b) and mark it with "
                 ".marked(recording.modes(), recording.events)."
+            )
+        if self.info.of_solids:
+            raise StandoffError(
+                "The automaton is that of two convex bodies, and one of these is a solid that need "
+                "not be: `modes()` has the visited modes, and `events` the switches."
             )
         return automaton(*self.pair).marked(self.modes(), self.events)
 
@@ -185,8 +198,8 @@ class Recording(RecordedFrames):
         ModuleNotFoundError
             If matplotlib is not installed; the message names the extra.
         ValueError
-            In a recording opened from a file or copied, which does not hold bodies or paths; fewer
-            than one picture; a view that is not two finite numbers.
+            In a recording opened from a file or copied, which does not hold bodies or paths; one of
+            solids; fewer than one picture; a view that is not two finite numbers.
         """
         if self.pair is None or self.paths is None:
             raise StandoffError(

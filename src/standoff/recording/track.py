@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +42,25 @@ AFTER_A_LOOK = 4
 """Frames of the compiled loop after such a frame, doubled while none needs a look."""
 
 
+@runtime_checkable
+class Recorded(Protocol):
+    """A tracker of another kind, as that of solids, which are above this layer: it records its own
+    runs."""
+
+    dt: float
+
+    def recorded_along(
+        self,
+        paths: tuple[Moving, Moving],
+        times: Array,
+        state: Any = None,
+        *,
+        locate: bool = True,
+        progress: Progress | None = None,
+    ) -> Recording:
+        """As `track_along`."""
+
+
 def track(
     tracker: Tracker,
     path_a: MotionLike,
@@ -55,8 +75,8 @@ def track(
 
     Parameters
     ----------
-    tracker : Tracker
-        Of the pair, with its law; frames are its ``dt`` apart.
+    tracker : Tracker or SolidTracker
+        Of the pair, with its options; frames are its ``dt`` apart.
     path_a, path_b : path, function or pose
         A path of ``standoff.motion``, or anything with ``pose(t)`` and ``twist(t)``; a function of
         time that returns a pose, which is called only from the first frame to the last and
@@ -82,7 +102,7 @@ def track(
     TypeError
         If there is no tracker, or a path is neither a path nor a function nor a pose.
     """
-    if not isinstance(tracker, Tracker):
+    if not isinstance(tracker, Tracker | Recorded):
         raise StandoffTypeError(
             f"{shown(tracker)} is not a Tracker: make one with so.Tracker(a, b, dt).",
             "tracker",
@@ -108,13 +128,13 @@ def track_along(
 
     Parameters
     ----------
-    tracker : Tracker
+    tracker : Tracker or SolidTracker
     path_a, path_b : Moving
     times : ndarray, shape (n,)
         Frame times [s], strictly increasing, at least one.
     locate : bool
     progress : callable, optional
-    state : TrackerState, optional
+    state : TrackerState or SolidState, optional
         Of this tracker, at the poses of ``times[0]``: the run begins there, as from a wrong start
         that ``Tracker.start_from`` gave, and its answer is the first frame's. Without it the
         first frame is answered by a global start.
@@ -130,6 +150,9 @@ def track_along(
     ValueError
         What a path or the tracker refuses; a state of another pair.
     """
+    if isinstance(tracker, Recorded):
+        paths = path_a, path_b
+        return tracker.recorded_along(paths, times, state, locate=locate, progress=progress)
     if state is not None:
         tracker.check_state(state)
     prepare(runs=True)
@@ -187,25 +210,15 @@ class _Run:
     def _block(self, state: TrackerState, first: int, end: int) -> TrackerState:
         """Answer frames first .. end - 1 from the state of the frame before."""
         steps = np.diff(self.times[first - 1 : end])
-        last, found = self.tracker.run(state, *self._moves(first, end), steps)
+        moves = moves_along(self.paths, self.times[first:end])
+        self.repaired += moves.repaired
+        last, found = self.tracker.run(state, *moves[:4], steps)
         self.answers[first:end] = found.blocks[:, : K.N_OUT]
         self.repaired += int(found.repaired.sum())
         for k in np.flatnonzero(found.blocks[:, K.OUT_COUNTS + N.EVENTS]).tolist():
             before = TrackerState(found[k - 1]) if k else state
             self.events += self._events(before, found[k], first + k)
         return last
-
-    def _moves(self, first: int, end: int) -> tuple[Array, Array, Array, Array]:
-        """The poses (n, 4, 4) and twists (n, 6) of frames first .. end - 1."""
-        poses = np.empty((2, end - first, 4, 4))
-        twists = np.empty((2, end - first, 6))
-        for k, time in enumerate(self.times[first:end].tolist()):
-            for body, path in enumerate(self.paths):
-                pose = path.pose(time)
-                poses[body, k], mark = matrix_and_mark(pose)
-                twists[body, k] = flat_twist(path.twist(time), pose)
-                self.repaired += mark
-        return poses[0], poses[1], twists[0], twists[1]
 
     def _events(self, state: TrackerState, answer: Proximity, frame: int) -> list[RecordedEvent]:
         """Return the events of a frame, from the state of the frame before it."""
@@ -226,6 +239,29 @@ class _Run:
         pose_a, pose_b, twist_a, twist_b = self.placed(time)
         poses = flat_pose(pose_a), flat_pose(pose_b)
         return *poses, flat_twist(twist_a, pose_a), flat_twist(twist_b, pose_b)
+
+
+class Moves(NamedTuple):
+    """Poses (n, 4, 4) and twists (n, 6) of frames, and how many rounded poses were repaired."""
+
+    poses_a: Array
+    poses_b: Array
+    twists_a: Array
+    twists_b: Array
+    repaired: int
+
+
+def moves_along(paths: tuple[Moving, Moving], times: Array) -> Moves:
+    """What two paths say at some times [s]."""
+    poses, twists = np.empty((2, len(times), 4, 4)), np.empty((2, len(times), 6))
+    repaired = 0
+    for k, time in enumerate(times.tolist()):
+        for body, path in enumerate(paths):
+            pose = path.pose(time)
+            poses[body, k], mark = matrix_and_mark(pose)
+            twists[body, k] = flat_twist(path.twist(time), pose)
+            repaired += mark
+    return Moves(poses[0], poses[1], twists[0], twists[1], repaired)
 
 
 def dated(event: Event, frame: int, time: float) -> RecordedEvent:

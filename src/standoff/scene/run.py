@@ -16,6 +16,7 @@ from standoff.scene.errors import SceneError
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
+from standoff.scene.solid_pairs import made_tracker
 from standoff.solids.answer import SolidProximity
 from standoff.tracking import Proximity, Tracker, distance
 
@@ -92,10 +93,10 @@ def prepare(scene: Scene, settings: TrackSettings) -> tuple[Tracker, Array]:
         If the times are not possible or the tracker refuses its settings.
     """
     times = scene.times(settings)
-    a, b = scene.pair_bodies
+    a, b = scene.pair_shapes
     try:
         # The longest step: the default gain, and the check of a given one, hold for all.
-        tracker = Tracker(a, b, float(np.diff(times).max()), settings.law)
+        tracker = made_tracker(a, b, float(np.diff(times).max()), settings)
     except (ValueError, TypeError) as error:
         raise SceneError(str(error), key="track", file=scene.file) from error
     return tracker, times

@@ -131,7 +131,7 @@ class Scene:
 
     @property
     def pair_bodies(self) -> tuple[Body, Body]:
-        """Bodies A and B, to be tracked.
+        """Bodies A and B, where only convex ones go.
 
         Raises
         ------
@@ -142,10 +142,10 @@ class Scene:
         for name, body in zip(self.pair, (a, b), strict=True):
             if not isinstance(body, Body):
                 raise SceneError(
-                    f"{shown(name)} is a solid that need not be convex, which nothing tracks yet: "
-                    "`standoff distance` asks one instant, `standoff impact` the first contact, "
-                    "and with [world] in place of the pair `standoff clearance --motion` and "
-                    "`standoff track` ask every frame by itself",
+                    f"{shown(name)} is a solid that need not be convex, and this takes convex "
+                    "bodies alone: `standoff track` tracks it, with --export run.html a page of "
+                    "the motion, `standoff distance` asks one instant, and `standoff impact` the "
+                    "first contact",
                     key=f"bodies.{name}",
                     file=self.file,
                 )

@@ -30,8 +30,11 @@ DEFAULT_STEP = 1e-3
 
 TIMES = ("step", "start", "duration")
 
-NAMES: tuple[str, ...] = ("law", *every_option(), *TIMES)
-"""Every key of the table: the law's name, the options of all laws, and the times."""
+OF_SOLIDS = ("minima",)
+"""Keys that only pairs with a solid have."""
+
+NAMES: tuple[str, ...] = ("law", *every_option(), *OF_SOLIDS, *TIMES)
+"""Every key of the table: the law's name, the options of all laws and of solids, and the times."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +48,16 @@ class TrackSettings:
         Time from frame to frame [s]; None: the samples' own times if there are any.
     start, duration : float or None
         The times that are tracked [s]; None: as far as the motions are known.
+    minima : float or None
+        Of a pair with a solid that need not be convex: the length below which all local minima of
+        the distance are kept.
     """
 
     law: Law = DEFAULT_LAW
     step: float | str | None = None
     start: float | None = None
     duration: float | None = None
+    minima: float | None = None
 
     def overridden(self, given: Mapping[str, object]) -> TrackSettings:
         """Return these settings with those of `given` that are not None put in their place.
@@ -72,7 +79,7 @@ class TrackSettings:
 
     def facts(self) -> dict[str, Any]:
         """Return the settings as plain data that JSON can hold, named as in a scene."""
-        return self.law.facts() | {name: getattr(self, name) for name in TIMES}
+        return self.law.facts() | {name: getattr(self, name) for name in (*OF_SOLIDS, *TIMES)}
 
 
 def read_settings(
@@ -96,12 +103,12 @@ def read_settings(
         does not have, or options that do not go together. The error names the first table's key.
     """
     usual = usual or TrackSettings()
-    for table, others in zip(tables, (beside, *[()] * len(tables)), strict=False):
-        table.expect(*others, *NAMES)
-    times = {name: getattr(usual, name) for name in TIMES}
+    for table, more in zip(tables, (beside, *[()] * len(tables)), strict=False):
+        table.expect(*more, *NAMES)
+    others = {name: getattr(usual, name) for name in (*OF_SOLIDS, *TIMES)}
     for table in reversed(tables):
-        times |= _times(table)
-    return TrackSettings(_law(tables, usual.law), **times)
+        others |= _times(table) | _of_solids(table)
+    return TrackSettings(_law(tables, usual.law), **others)
 
 
 def _times(table: Table) -> dict[str, Any]:
@@ -114,6 +121,10 @@ def _times(table: Table) -> dict[str, Any]:
     if "duration" in table:
         found["duration"] = table.positive("duration")
     return found
+
+
+def _of_solids(table: Table) -> dict[str, Any]:
+    return {name: table.positive(name) for name in OF_SOLIDS if name in table}
 
 
 def _law(tables: Sequence[Table], usual: Law) -> Law:

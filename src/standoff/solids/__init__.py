@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
+    from standoff.recording.local_minima import LocalMinima, MinimumEvent
     from standoff.solids.answer import (
         Continuum,
         NearestPair,
@@ -21,13 +22,14 @@ if TYPE_CHECKING:
     from standoff.solids.spatial.self_intersections import SelfIntersection, SelfIntersections
     from standoff.solids.spatial.solid import Solid
     from standoff.solids.tracked.answers import SolidAnswers
-    from standoff.solids.tracked.events import LocalMinima, MinimumEvent
+    from standoff.solids.tracked.frame_buffer import SolidFrameBuffer
     from standoff.solids.tracked.state import SolidState
     from standoff.solids.tracked.tracker import SolidTracker
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
+            "standoff.recording.local_minima": ("LocalMinima", "MinimumEvent"),
             "standoff.solids.answer": (
                 "Continuum",
                 "NearestPair",
@@ -47,7 +49,7 @@ else:
             ),
             "standoff.solids.spatial.solid": ("Solid",),
             "standoff.solids.tracked.answers": ("SolidAnswers",),
-            "standoff.solids.tracked.events": ("LocalMinima", "MinimumEvent"),
+            "standoff.solids.tracked.frame_buffer": ("SolidFrameBuffer",),
             "standoff.solids.tracked.state": ("SolidState",),
             "standoff.solids.tracked.tracker": ("SolidTracker",),
         },
@@ -67,6 +69,7 @@ __all__ = [
     "Solid",
     "SolidAnswers",
     "SolidCounts",
+    "SolidFrameBuffer",
     "SolidProximity",
     "SolidState",
     "SolidTracker",

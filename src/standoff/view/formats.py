@@ -11,6 +11,9 @@ from standoff.recording import Recording
 
 ENDINGS = (".html", ".mp4", ".gif", ".rrd")
 
+FILMS = (".mp4", ".gif")
+"""Those of them that are drawn as pictures, of convex bodies alone."""
+
 RunWriter = Callable[[Recording, BinaryIO], object]
 """Writes a run to a stream."""
 

@@ -208,6 +208,14 @@ def scene_of(recording: Recording) -> Scene:
             "what",
             recording,
         )
+    if recording.info.of_solids:
+        raise StandoffError(
+            "The live page of a recording takes convex bodies alone, and one of these is a solid "
+            "that need not be: standoff.view.export.save_page(recording, 'run.html') shows the "
+            "motion, and so.view of the scene follows it.",
+            "what",
+            recording,
+        )
     first, last = (float(recording.time[k]) for k in (0, -1))
     ends = [
         path if isinstance(path, Fixed) else _Stretch(path, first, last) for path in recording.paths

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -13,6 +13,7 @@ from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import FaceMesh, edge_lines, face_meshes
 from standoff.view.tolerances import LIFT
+from standoff.world.shapes import boundary_of
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -76,18 +77,19 @@ class Shape:
         return point
 
 
-def shape_of(body: Boundary) -> Shape:
+def shape_of(given: Any) -> Shape:
     """Return what is shown of a body.
 
     Parameters
     ----------
-    body : Boundary
-        A convex body, or the boundary of a solid that need not be.
+    given : Body, Solid or Boundary
+        Of a solid that need not be convex its boundary is shown.
 
     Returns
     -------
     Shape
     """
+    body = boundary_of(given)
     meshes, lines = face_meshes(body, fine=True), edge_lines(body)
     vertices = np.asarray(body.vertex_points, dtype=float).reshape(-1, 3)
     cloud = [vertices, *(line.points for line in lines), *(mesh.points for mesh in meshes)]

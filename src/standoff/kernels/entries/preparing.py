@@ -81,7 +81,12 @@ def prepare_tracked_solids() -> None:
     from standoff.kernels.entries import minima, solid_contact, solids, tracked_solids
 
     needed = [tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point]
-    needed += [tracked_solids.number_minima, minima.stationary, minima.one_place]
+    needed += [
+        tracked_solids.number_minima,
+        tracked_solids.placed_beside,
+        minima.stationary,
+        minima.one_place,
+    ]
     needed += [minima.span_patches, solid_contact.signed_minima, solid_contact.pieces_parted]
     _prepare_each(needed)
 

@@ -4,7 +4,7 @@ from math import inf
 
 from numba import types
 
-from standoff.kernels.algebra.rigid import unit_quaternion
+from standoff.kernels.algebra.rigid import relative_pose, unit_quaternion
 from standoff.kernels.algebra.vectors import norm
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import (
@@ -63,6 +63,7 @@ from standoff.kernels.solids.spatial_progress import (
     evaluations,
 )
 from standoff.kernels.solids.spatial_tolerances import MOTION_SPARE
+from standoff.kernels.state.arrays import BAD_POSE_A, BAD_POSE_B, FINE, is_pose
 
 # What a frame tells: how it ended, distance, bound, motion, both points, leaves and parameters,
 # rows of the front, evaluations, 1 where the front was made anew, 1 where the solids are sure
@@ -139,6 +140,24 @@ def ask(best, asked, away):
     best[MEETING], best[ABOVE] = best[TOLERANCE], asked[2]
     best[LEAST], best[OPEN], best[MET] = inf, inf, 0.0
     best[N_MINIMA], best[N_OPEN], best[LOST] = 0.0, 0.0, 0.0
+
+
+@entry(READ_ROWS, READ_ROWS, ROWS, work="solids")
+def placed_beside(poses_a, poses_b, out):
+    """B's poses in A's frame (n, 12), of world poses of both: FINE, or which of a row's is none."""
+    refused = FINE
+    for i in range(len(out)):
+        a, b = pointer(poses_a, 12 * i), pointer(poses_b, 12 * i)
+        if refused == FINE and not is_pose(a):
+            refused = BAD_POSE_A
+        if refused == FINE and not is_pose(b):
+            refused = BAD_POSE_B
+        now, to = relative_pose(a, b), pointer(out, 12 * i)
+        for k in range(9):
+            to[k] = now.R[k]
+        for k in range(3):
+            to[9 + k] = now.p[k]
+    return refused
 
 
 # B's pose in A's frame in the frame before, with the least distance and the bound there; its poses

@@ -25,6 +25,8 @@ COLLAPSED_FRAME: Final = 1e-6
 BENDS_LESS: Final = 3e-3
 """Of its length: a continuum that bends less is a line; pairs within the tolerance of the distance
 lie to both sides of it."""
+NEAREST_ALONE: Final = 1e-300
+"""Length: as `minima` it asks for the features of the nearest pairs and for no others."""
 LEAST_LENGTH: Final = 1e-300
 """Length: keeps a quotient by a vanished vector finite."""
 BOX_SPARE: Final = 2e-15

@@ -5,15 +5,16 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels.entries import tracked_solids as T
 from standoff.read_only import KeepsReadOnly
+from standoff.recording.local_minima import LocalMinima, MinimumEvent
+from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
-from standoff.solids.tracked.events import LocalMinima, MinimumEvent
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,6 +24,23 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+class Places(NamedTuple):
+    """Where the witness points of many frames lie.
+
+    Attributes
+    ----------
+    feature_a, feature_b : (n,) arrays of Feature
+    parameters_a, parameters_b : (n, 3) arrays
+        nan where the feature has fewer parameters.
+    """
+
+    feature_a: NDArray[np.object_]
+    feature_b: NDArray[np.object_]
+    parameters_a: Array
+    parameters_b: Array
+
+
+@hides("places")
 class SolidAnswers(KeepsReadOnly):
     """Answers of n frames of two solids, in arrays of n rows; ``answers[k]`` is one
     `SolidProximity`.
@@ -33,7 +51,8 @@ class SolidAnswers(KeepsReadOnly):
     point_a, point_b, normal : (n, 3) arrays
         As in `SolidProximity`, in world axes; nan where a frame has none.
     status : (n,) array of Status
-    certified : (n,) array of bool
+    certified, unique : (n,) arrays of bool
+        As in `SolidProximity`.
     motion : (n,) array
         What no point of B has moved more than since the frame before, as A sees it, length.
     evaluations : (n,) array of int
@@ -52,8 +71,10 @@ class SolidAnswers(KeepsReadOnly):
         plain: tuple[NDArray[np.object_], float],
         make: Callable[[int], SolidProximity],
         minima: Callable[[], tuple[LocalMinima, tuple[MinimumEvent, ...]]],
+        where: Callable[[], Places],
     ) -> None:
         self._make, self._special, self._tell = make, dict(special), minima
+        self._where = where
         self.status, slack = plain
         self.point_a, self.point_b, self.normal = places
         self.distance = told[:, T.DISTANCE].copy()
@@ -63,6 +84,7 @@ class SolidAnswers(KeepsReadOnly):
         self.evaluations = told[:, T.TAKEN].astype(np.int64)
         self.rebuilds = told[:, T.ANEW] > 0.0
         self.restarts = np.zeros(len(told), dtype=bool)
+        self.unique = np.ones(len(told), dtype=bool)
         for k, answer in self._special.items():
             self._put(k, answer)
         self.certified = np.array([each.certified for each in self.status], dtype=bool)
@@ -78,6 +100,12 @@ class SolidAnswers(KeepsReadOnly):
         self.normal[k] = answer.normal
         self.evaluations[k] = answer.counts.evaluations
         self.restarts[k] = answer.counts.restarts > 0
+        self.unique[k] = answer.unique
+
+    @cached_property
+    def places(self) -> Places:
+        """The features of the witness points of all frames, and their parameters, as arrays."""
+        return self._where()
 
     @property
     def minima(self) -> LocalMinima:

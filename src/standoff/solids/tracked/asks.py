@@ -31,6 +31,7 @@ from standoff.solids.tracked.front import (
     Frames,
     Front,
     Minima,
+    Work,
     front_at,
     front_in_contact,
     room_for,
@@ -71,10 +72,10 @@ class Asks(NamedTuple):
         above = reach_of_minima(minima, patch)[0]
         return Minima(above, patch or 0.0, (fans_of(self.a), fans_of(self.b)))
 
-    def frames(self, front: Front) -> Frames:
-        """Frames from a front on."""
+    def frames(self, front: Front, room: Work | None = None) -> Frames:
+        """Frames from a front on; `room`: arrays that nobody else writes to meanwhile."""
         packed = self.a.packed, self.b.packed
-        return Frames(packed, front, self.proof, self.options.deadline, self.minima)
+        return Frames(packed, front, self.proof, self.options.deadline, self.minima, room)
 
     def cold(self, pair: PlacedPair, born: int = 0) -> tuple[SolidProximity, Front | None]:
         """An answer from nothing, with the front that frames go on from where there is one. `born`:

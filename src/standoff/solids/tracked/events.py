@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,65 +11,12 @@ from numpy.typing import NDArray
 from standoff.bodies.features import Feature
 from standoff.kernels.solids.minima_sets import SET_BRANCH, SET_SPOT
 from standoff.kernels.solids.spatial_progress import BOUND
+from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.solids.answer import NearestPair, SolidProximity
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.branches import NONE, Birth, End
 
 Array = NDArray[np.float64]
-Kind = Literal["birth", "end", "switch", "handover"]
-
-
-class LocalMinima(NamedTuple):
-    """All local minima of many frames, a row each, frame after frame, the nearest first.
-
-    Attributes
-    ----------
-    frame, key : (m,) arrays of int
-        The key is that of `NearestPair`.
-    distance, lower_bound : (m,) arrays
-    point_a, point_b : (m, 3) arrays
-        World axes.
-    feature_a, feature_b : (m,) arrays of Feature
-    """
-
-    frame: NDArray[np.int64]
-    key: NDArray[np.int64]
-    distance: Array
-    lower_bound: Array
-    point_a: Array
-    point_b: Array
-    feature_a: NDArray[np.object_]
-    feature_b: NDArray[np.object_]
-
-
-class MinimumEvent(NamedTuple):
-    """What becomes of a local minimum from one frame to the next.
-
-    Attributes
-    ----------
-    frame : int
-        The first in which it is so.
-    kind : "birth", "end", "switch", "handover"
-        It begins, or ends; it goes to another face, edge or vertex; it is the nearest from now on.
-    key : int
-    distance : float
-        In that frame; of one that ends in the frame before.
-    features : (Feature, Feature)
-        The same.
-    reason : Birth or End, optional
-        Of a birth or an end.
-    other : int
-        Of one that has MERGED the key of the one that it has come to; of a handover that of the
-        one that was the nearest; else -1.
-    """
-
-    frame: int
-    kind: Kind
-    key: int
-    distance: float
-    features: tuple[Feature, Feature]
-    reason: Birth | End | None = None
-    other: int = NONE
 
 
 def minima_of(
@@ -95,7 +42,7 @@ def minima_of(
         rows[:, 0].copy(),
         rows[:, BOUND] - sum(solid.slack for solid in solids),
         *spots,
-        *(_features(solid, rows[:, 1 + side]) for side, solid in enumerate(solids)),
+        *(features_at(solid, rows[:, 1 + side]) for side, solid in enumerate(solids)),
     )
     others = [(k, m) for k in sorted(special) for m in special[k].minima]
     if not others:
@@ -105,7 +52,8 @@ def minima_of(
     return LocalMinima(*(each[order] for each in every))
 
 
-def _features(solid: SolidModel, leaves: Array) -> NDArray[np.object_]:
+def features_at(solid: SolidModel, leaves: Array) -> NDArray[np.object_]:
+    """The features of leaves (m,), an object each; equal ones share theirs."""
     known, which = np.unique(leaves.astype(np.int64), return_inverse=True)
     return _objects([solid.feature_of(int(leaf)) for leaf in known])[which]
 

@@ -124,9 +124,8 @@ class Minima(NamedTuple):
 NO_MINIMA = Minima(0.0, 0.0, (NONE, NONE))
 
 
-@lru_cache(maxsize=8)
-def _room(thread: int) -> Work:
-    del thread
+def new_room() -> Work:
+    """Arrays for one who keeps them from frame to frame."""
     return Work(
         np.zeros(STORE_REALS),
         np.empty(KEY_REALS * MOST_ROWS),
@@ -137,6 +136,12 @@ def _room(thread: int) -> Work:
         np.zeros(8, dtype=np.int64),
         np.empty(SET_REALS * MOST_TOLD),
     )
+
+
+@lru_cache(maxsize=8)
+def _room(thread: int) -> Work:
+    del thread
+    return new_room()
 
 
 def front_at(
@@ -175,10 +180,11 @@ class Frames:
         tolerance: float,
         deadline: int,
         minima: Minima = NO_MINIMA,
+        room: Work | None = None,
     ) -> None:
         self.packed, self.fans, self.done = packed, minima.fans, 1
         self.asked = np.array([tolerance, PROOF_ROUNDING, minima.above, minima.wider])
-        self.work = _room(threading.get_ident())
+        self.work = room or _room(threading.get_ident())
         store, keys, rows, branches = self.work[:4]
         self.before, self.best, self.senses = front.before.copy(), front.best.copy(), front.senses
         self.best[C.BUDGET] = deadline
@@ -193,25 +199,36 @@ class Frames:
     def go(self, poses: Array, told: Array) -> int:
         """Frames with B at poses (n, 12) in A's frame, into the rows of `told`; how many were
         done."""
-        store, keys, rows, branches, merged, minima, counts, sets = self.work
-        done = int(
-            solid_frames(
-                self.packed,
-                (self.before, poses, self.asked),
-                self.senses,
-                (self.best, minima),
-                self.fans,
-                (store, keys, rows, branches, merged),
-                counts,
-                (told, sets),
-            )
-        )
-        total = int(told[:done, N_SETS].sum())
-        self.minima = sets.reshape(-1, SET_REALS)[:total].copy() if total else NO_ROWS
+        done = int(solid_frames(*self.call(poses, told)))
+        self.minima = self.told(told[:done])
         self.done = done
-        self.before[:12] = poses[done - 1]
-        self.before[12], self.before[13] = told[done - 1, DISTANCE], told[done - 1, BOUND]
+        self.went_to(poses[done - 1 : done], told[done - 1])
         return done
+
+    def call(self, poses: Array, told: Array) -> tuple[Any, ...]:
+        """What the kernel is called with for frames at poses (n, 12), into the rows of `told`."""
+        store, keys, rows, branches, merged, minima, counts, sets = self.work
+        return (
+            self.packed,
+            (self.before, poses, self.asked),
+            self.senses,
+            (self.best, minima),
+            self.fans,
+            (store, keys, rows, branches, merged),
+            counts,
+            (told, sets),
+        )
+
+    def went_to(self, pose: Array, row: Array) -> None:
+        """The last frame had B at a pose (1, 12), and told a row."""
+        before = self.before
+        before[:12] = pose[0]
+        before[12], before[13] = row[DISTANCE], row[BOUND]
+
+    def told(self, told: Array) -> Array:
+        """Rows of what the last call told of local minima, of frames with rows `told`."""
+        total = int(told[:, N_SETS].sum())
+        return self.work.sets.reshape(-1, SET_REALS)[:total].copy() if total else NO_ROWS
 
     def kept(self) -> Front:
         """The front after the last frame."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import not_installed
-from standoff.solids.tracked.events import LocalMinima
+from standoff.recording.local_minima import LocalMinima
 
 try:
     from matplotlib.axes import Axes

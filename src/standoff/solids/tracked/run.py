@@ -13,15 +13,16 @@ from standoff.kernels.entries import tracked_solids as T
 from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import POINTS
 from standoff.motion import Pose
+from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.distance import inside_of, senses_of
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.tracked.answers import SolidAnswers, world_places
+from standoff.solids.tracked.answers import Places, SolidAnswers, world_places
 from standoff.solids.tracked.asks import Asks, numbered
-from standoff.solids.tracked.events import Course, LocalMinima, MinimumEvent, events_of, minima_of
+from standoff.solids.tracked.events import Course, events_of, features_at, minima_of
 from standoff.solids.tracked.front import NO_ROWS, Frames, Front, moved_by, room_for
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
@@ -68,12 +69,44 @@ class Run:
 
     def answers(self) -> tuple[SolidState, SolidAnswers]:
         front = self._through()
+        answers = self._all_answers()
+        return self._state(answers[len(answers) - 1], front), answers
+
+    def of_state(self) -> SolidAnswers:
+        """The answer of the state, at whose poses the only frame is."""
+        self.special[0] = self.state.proximity
+        self.told[0, T.MOTION] = np.nan
+        return self._all_answers()
+
+    def _all_answers(self) -> SolidAnswers:
         slack = self.asks.a.slack + self.asks.b.slack
-        statuses = np.array([_status(inside) for inside in self.inside], dtype=object)
+        statuses = np.array([status_of(inside) for inside in self.inside], dtype=object)
         places = world_places(self.told, self.a)
         plain = statuses, slack
-        answers = SolidAnswers(self.told, places, self.special, plain, self._made, self.minima_told)
-        return self._state(answers[len(answers) - 1], front), answers
+        later = self._made, self.minima_told, self.places_told
+        return SolidAnswers(self.told, places, self.special, plain, *later)
+
+    def places_told(self) -> Places:
+        """The features and parameters of the witness points of all frames."""
+        at = self.told[:, T.LEAVES : T.PARAMETERS + 4].copy()
+        rows, first = self._all_minima()
+        has = np.flatnonzero(np.diff(first))
+        at[has] = rows[first[has], 1:7]  # as a point of a face may be told as one of its edge
+        solids, found, values = (self.asks.a, self.asks.b), list[Any](), list[Array]()
+        for side, solid in enumerate(solids):
+            leaves, own = at[:, side], at[:, 2 + 2 * side : 4 + 2 * side]
+            features, parameters = features_at(solid, leaves), np.full((len(leaves), 3), np.nan)
+            for k, row in enumerate(own):
+                if k not in self.special:
+                    given = solid.parameters_of(int(leaves[k]), row)
+                    parameters[k, : len(given)] = given
+            for k, answer in self.special.items():
+                features[k] = (answer.feature_a, answer.feature_b)[side]
+                given = (answer.parameters_a, answer.parameters_b)[side]
+                parameters[k, : len(given)] = given
+            found.append(features)
+            values.append(parameters)
+        return Places(*found, *values)
 
     def minima_told(self) -> tuple[LocalMinima, tuple[MinimumEvent, ...]]:
         """The local minima of all frames, and what becomes of them.
@@ -134,15 +167,37 @@ class Run:
         frames = self.asks.frames(front)
         while at < len(self.relative):
             first, at = at, at + frames.go(self.relative[at:], self.told[at:])
-            self.minima.append(frames.minima)
-            self.inside[first:at] = front.inside
-            settled = self._settled(at - 1, frames, front.inside)
-            for k, key, into in frames.merged().tolist():
-                self.merged[first + k, key] = into
-            if not settled:
+            if not self._taken(frames, first, at, front.inside):
                 self.born = frames.born
                 return self._meet(frames.kept(), at - 1, float(self.told[at - 1, T.MOTION]))
         return frames.kept(), at
+
+    def _taken(self, frames: Frames, first: int, end: int, inside: str) -> bool:
+        """Take what the kernel told of frames first .. end - 1: is the last one answered?"""
+        self.minima.append(frames.minima)
+        self.inside[first:end] = inside
+        settled = self._settled(end - 1, frames, inside)
+        for k, key, into in frames.merged().tolist():
+            self.merged[first + k, key] = into
+        return settled
+
+    def taken_up(
+        self, frames: Frames, told: Array, inside: str
+    ) -> tuple[SolidProximity, Frames | Front | None]:
+        """The answer of a run of one frame, whose row the kernel has told; and what the next one
+        goes on from, `frames` themselves where they go on."""
+        self.told[:], frames.minima = told, frames.told(told)
+        after: Frames | Front | None = frames
+        if not self._taken(frames, 0, 1, inside):
+            self.born = frames.born
+            after, _ = self._meet(frames.kept(), 0, float(self.told[0, T.MOTION]))
+        return self.special[0] if self.special else self._made(0), after
+
+    def made(self, told: Array, inside: str, minima: Array) -> SolidProximity:
+        """The answer of a run of one frame, of what the kernel told of it alone."""
+        self.told[:], self.inside[0] = told, inside
+        self.minima.append(minima)
+        return self._made(0)
 
     def _pair(self, k: int) -> PlacedPair:
         poses = (_checked(row) for row in (self.a[k], self.b[k]))
@@ -178,7 +233,7 @@ class Run:
         minima = self._minima_of(k)
         senses, rows = senses_of(inside), list(minima[:, :POINTS]) or [found.best]
         patches = [patch_told(pair, each) for each in minima] if self.asks.options.patch else []
-        told = Told(_status(inside), Smoothness.SMOOTH, inside=inside, patches=patches)
+        told = Told(status_of(inside), Smoothness.SMOOTH, inside=inside, patches=patches)
         places = [pair.place(each, senses) for each in rows]
         answer = answer_of(pair, found, places, told)
         if len(minima):
@@ -198,7 +253,7 @@ class Run:
         return rows[first[k] : first[k + 1]]
 
 
-def _status(inside: str) -> Status:
+def status_of(inside: str) -> Status:
     """Of a frame that is proven at one place."""
     return Status.CONTAINED if inside else Status.CONVERGED
 
@@ -223,8 +278,7 @@ def _checked(row: Array) -> Pose:
 
 
 def _relative(a: Array, b: Array) -> Array:
-    """B's poses (n, 12) in A's frame."""
-    turns = a[:, :9].reshape(-1, 3, 3)
-    rotation = np.einsum("nji,njk->nik", turns, b[:, :9].reshape(-1, 3, 3))
-    shift = np.einsum("nji,nj->ni", turns, b[:, 9:] - a[:, 9:])
-    return np.ascontiguousarray(np.concatenate([rotation.reshape(-1, 9), shift], axis=1))
+    """B's poses (n, 12) in A's frame, of world poses that were checked."""
+    found = np.empty((len(a), 12))
+    T.placed_beside(np.ascontiguousarray(a), np.ascontiguousarray(b), found)
+    return found

@@ -12,14 +12,17 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries.preparing import prepare_tracked_solids
 from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
+from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
 from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.tolerances import NEAREST_ALONE
 from standoff.solids.tracked.answers import SolidAnswers
 from standoff.solids.tracked.asks import Asks
+from standoff.solids.tracked.frame_buffer import SolidFrameBuffer
 from standoff.solids.tracked.front import Frames, Front
 from standoff.solids.tracked.run import Run
 from standoff.solids.tracked.state import SolidState
@@ -27,10 +30,14 @@ from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
 
 if TYPE_CHECKING:
     from standoff.motion import PoseLike, PosesLike
+    from standoff.motion.moving import Moving
+    from standoff.progress import Progress
+    from standoff.recording import Recording
 
 Array = NDArray[np.float64]
 
 
+@hides("answers_of", "frames", "recorded_along", "telling_features")
 class SolidTracker(KeepsReadOnly):
     """Keeps the proven distance of two solids while they move; ``so.Tracker`` of solids makes it.
 
@@ -137,6 +144,62 @@ class SolidTracker(KeepsReadOnly):
         a, b = _row(Pose.of(pose_a)), _row(Pose.of(pose_b))
         return Run(self._asks, state, a, b).single()
 
+    def buffer(self, state: SolidState) -> SolidFrameBuffer:
+        """Arrays for ``step_into`` that begin at a state.
+
+        Raises
+        ------
+        TypeError, ValueError
+            As ``step``.
+        """
+        self._check(state)
+        return SolidFrameBuffer(self._asks, state)
+
+    def step_into(
+        self,
+        buffer: SolidFrameBuffer,
+        pose_a: PoseLike | None = None,
+        pose_b: PoseLike | None = None,
+    ) -> float:
+        """One frame in place, for loops that must not allocate.
+
+        ``buffer.distance``, ``lower_bound``, ``upper_bound``, ``normal``, ``point_a``, ``point_b``
+        and ``status`` read its answer without making an object. A frame that ties, or in which the
+        solids meet, is made as ``step`` makes it.
+
+        Parameters
+        ----------
+        buffer : SolidFrameBuffer
+            Of this tracker. Without poses the frame reads ``buffer.pose_a`` and ``pose_b``.
+        pose_a, pose_b : Pose or what ``Pose.of`` reads, optional
+            World poses of the solids' frames. Arrays (4, 4) of float64 are read as they are;
+            anything else is converted first.
+
+        Returns
+        -------
+        float
+            The distance.
+
+        Raises
+        ------
+        StandoffError
+            A buffer of another tracker.
+        ValueError
+            No pose.
+        """
+        if buffer.asks is not self._asks:
+            raise StandoffError(
+                "The buffer belongs to another tracker: make one with tracker.buffer.", "buffer"
+            )
+        if type(pose_a) is type(pose_b) is np.ndarray:
+            if not buffer.put_arrays(pose_a, pose_b):
+                buffer.put(pose_a, pose_b)
+        elif pose_a is not None or pose_b is not None:
+            buffer.put(pose_a, pose_b)  # type: ignore[arg-type]
+        else:
+            buffer.repaired = 0
+        return buffer.step()
+
     def run(
         self, state: SolidState, poses_a: PosesLike, poses_b: PosesLike
     ) -> tuple[SolidState, SolidAnswers]:
@@ -170,6 +233,34 @@ class SolidTracker(KeepsReadOnly):
             )
         a, b = np.broadcast_to(a, (n, 12)), np.broadcast_to(b, (n, 12))
         return Run(self._asks, state, a, b).answers()
+
+    def recorded_along(
+        self,
+        paths: tuple[Moving, Moving],
+        times: Array,
+        state: SolidState | None = None,
+        *,
+        locate: bool = True,
+        progress: Progress | None = None,
+    ) -> Recording:
+        """Track along two paths at given times, s; `standoff.recording.track` asks for it."""
+        from standoff.solids.tracked.record import recorded
+
+        if state is not None:
+            self._check(state)
+        return recorded(self, paths, times, state, locate=locate, progress=progress)
+
+    def telling_features(self) -> SolidTracker:
+        """This tracker, or one that asks the same and tells in each frame the feature with the
+        fewest parameters that a witness point is on, as trackers with ``minima=`` do."""
+        if self.minima is not None:
+            return self
+        a, b, dt, tolerance, deadline = self.a, self.b, self.dt, self.tolerance, self.deadline
+        return SolidTracker(a, b, dt, tolerance=tolerance, deadline=deadline, minima=NEAREST_ALONE)
+
+    def answers_of(self, state: SolidState, poses_a: Array, poses_b: Array) -> SolidAnswers:
+        """The answer of a state as arrays, with the poses (1, 4, 4) that it is of."""
+        return Run(self._asks, state, flat_poses(poses_a), flat_poses(poses_b)).of_state()
 
     def frames(self, front: Front) -> Frames:
         """Frames from a front on, with what this tracker asks."""
