@@ -1,8 +1,8 @@
 """Ends of the leaves of edges under plane faces: more spots of a contact that is pressed already.
 
-A round rim that lies on a plane face has no corners. Where it is level its common normals are anywhere
-on it, and where it is hardly tilted there is one, so that the rim would rock. The ends of its
-leaves stay where they are on it, and each is as deep under the face as it is.
+A round rim that lies on a plane face has no corners. Where it is level its common normals are
+anywhere on it, and where it is hardly tilted there is one, so that the rim would rock. The ends of
+its leaves stay where they are on it, and each is as deep under the face as it is.
 """
 
 from standoff.kernels.algebra.vectors import axpy, dot, norm, scale, sub

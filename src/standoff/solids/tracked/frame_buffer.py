@@ -164,7 +164,7 @@ class SolidFrameBuffer:
     def _load(self, front: Front | None, born: int) -> None:
         """Go on from a front; without one, or after an overlap, the next frame is a step."""
         self._front, self._born, self._frames = front, born, None
-        if front is None or front.met is not None:
+        if front is None or front.contact is not None:
             return
         self._frames, self._inside = self.asks.frames(front, self._room), front.inside
         self._plain = status_of(front.inside)
