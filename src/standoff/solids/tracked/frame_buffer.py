@@ -124,9 +124,11 @@ class SolidFrameBuffer:
             return self._anew()
         T.solid_frames(*self._call)
         row = self._told[0]
-        self._frames.went_to(self._now, row)
         if row.item(T.ENDED) != T.SINGLE or row.item(T.SURE) == 0.0:
-            return self._looked_at(self._frames)
+            before = self._frames.before[:12].copy()
+            self._frames.went_to(self._now, row)
+            return self._looked_at(self._frames, before)
+        self._frames.went_to(self._now, row)
         self._answer, self.status = None, self._plain
         np.dot(self._own, self._turn, out=self._points)
         self._points += self._shift
@@ -152,10 +154,10 @@ class SolidFrameBuffer:
         self._load(state.front, state.born)
         return self._tell(answer)
 
-    def _looked_at(self, frames: Frames) -> float:
-        """A frame that the kernel does not tell alone."""
+    def _looked_at(self, frames: Frames, before: Array) -> float:
+        """A frame that the kernel does not tell alone, after one with B at a pose in A's frame."""
         run = self._run()
-        answer, front = run.taken_up(frames, self._told, self._inside)
+        answer, front = run.taken_up(frames, self._told, self._inside, before)
         if front is not frames:
             assert not isinstance(front, Frames)
             self._load(front, run.born)

@@ -43,6 +43,7 @@ class Run:
         self.special: dict[int, SolidProximity] = {}
         self.merged: dict[tuple[int, int], int] = {}
         self.minima, self.first = [NO_ROWS], np.zeros(len(a) + 1, dtype=np.int64)
+        self._before: Array | None = None
 
     def single(self) -> tuple[SolidState, SolidProximity]:
         """Of a run of one frame, without arrays."""
@@ -53,6 +54,8 @@ class Run:
     @property
     def _first(self) -> Array:
         """B's pose (12,) in A's frame in the answer that the run begins from."""
+        if self._before is not None:
+            return self._before
         a, b = self.state.proximity.poses
         first: Array = _relative(a[None], b[None])[0]
         return first
@@ -182,10 +185,12 @@ class Run:
         return settled
 
     def taken_up(
-        self, frames: Frames, told: Array, inside: str
+        self, frames: Frames, told: Array, inside: str, before: Array
     ) -> tuple[SolidProximity, Frames | Front | None]:
-        """The answer of a run of one frame, whose row the kernel has told; and what the next one
-        goes on from, `frames` themselves where they go on."""
+        """The answer of a run of one frame, whose row the kernel has told, after one in which the
+        solids were apart with B at the pose `before` (12,) in A's frame; and what the next one goes
+        on from, `frames` themselves where they go on."""
+        self._before = before
         self.told[:], frames.minima = told, frames.told(told)
         after: Frames | Front | None = frames
         if not self._taken(frames, 0, 1, inside):
