@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from test_tracked_solids import wandering
 
 import standoff as so
 from families.solid_shapes import bolt, bracket, tube
-from solids.test_tracked_solids import wandering
 from standoff.solids import SolidFrameBuffer, SolidProximity
 from standoff.tracking.status import Status
 

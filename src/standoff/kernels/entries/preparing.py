@@ -87,7 +87,8 @@ def prepare_tracked_solids() -> None:
         minima.stationary,
         minima.one_place,
     ]
-    needed += [minima.span_patches, solid_contact.signed_minima, solid_contact.pieces_parted]
+    needed += [minima.span_patches, solid_contact.follow_contact, solid_contact.signed_minima]
+    needed += [solid_contact.pieces_parted]
     _prepare_each(needed)
 
 
