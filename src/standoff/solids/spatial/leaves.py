@@ -29,6 +29,7 @@ from standoff.solids.spatial.tolerances import (
     LEAST_LENGTH,
     NO_AXIS,
     ROUND_KIND,
+    SIDE_ROUNDING,
     SMOOTH_JOIN,
     SPOT_SPARE,
 )
@@ -125,11 +126,13 @@ def _on_it(
     cuts: list[list[int]] = []
     low = np.array([pieces[k].low for k in own]).reshape(-1, 2)
     high = np.array([pieces[k].high for k in own]).reshape(-1, 2)
+    spare = SIDE_ROUNDING * float(np.abs(chart.rectangle).max())
     for row in rows:
         u0, u1, v0, v1 = row
         meets = (low <= [u1, v1]).all(axis=1) & (high >= [u0, v0]).all(axis=1)
         # a straight trim along the rectangle's side does not cut it
-        inner = (low < [u1, v1]).all(axis=1) & (high > [u0, v0]).all(axis=1)
+        inner = (low < [u1 - spare, v1 - spare]).all(axis=1)
+        inner &= (high > [u0 + spare, v0 + spare]).all(axis=1)
         middle = on_face(
             boundary.ints, boundary.reals, chart.number, 0.5 * (u0 + u1), 0.5 * (v0 + v1)
         )

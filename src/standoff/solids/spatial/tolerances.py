@@ -29,6 +29,9 @@ NEAREST_ALONE: Final = 1e-300
 """Length: as `minima` it asks for the features of the nearest pairs and for no others."""
 LEAST_LENGTH: Final = 1e-300
 """Length: keeps a quotient by a vanished vector finite."""
+SIDE_ROUNDING: Final = 1.5e-14
+"""Of a chart's greatest parameter, some sixty roundings: a trim that lies no further inside a
+rectangle lies along its side."""
 BOX_SPARE: Final = 2e-15
 """Of the coordinates: about eight roundings of a box's extents."""
 SPOT_SPARE: Final = 1e-15
