@@ -60,6 +60,8 @@ CONTACT_REALS = 8
 UNSEEN, CAME, CAME_TO_NONE, HELD = 0.0, 1.0, 2.0, 3.0
 # Times the way of a common normal out of its leaves, within which it is looked for beside them.
 PAST_LEAF = 2.0
+# Of a signed distance above 0: how far B may move, in ticks, before its common normal goes on.
+RESTS_ABOVE = 0.5
 # Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
 MOST_RETRIED_IN = 4
 
@@ -218,9 +220,9 @@ def put_four(r, o, q):
 
 
 @kernel
-def look_at_leaves(both, front, k, turn, best, minima, counts):
+def look_at_leaves(both, front, k, turn, retried, best, minima, counts):
     """Keep the common normal of a pair of leaves, or let it rest. One that has left them is beside
-    them."""
+    them. `turn`, `retried`: as of `rests_for` and `find_contacts`."""
     o, r = CONTACT_REALS * k, front.rows
     counts[LEAF_PAIRS] += 1
     leaves = int(r[o + C_A]), int(r[o + C_B])
@@ -246,6 +248,8 @@ def look_at_leaves(both, front, k, turn, best, minima, counts):
     if found:
         spot = q, n, d
         keep_signed(both.a, both.b, both.fans, leaves, spot, best[ABOVE], best, minima)
+        if d > 0.0 and retried > 1:
+            r[o + C_REST] = front.store[GONE] + RESTS_ABOVE * d
 
 
 @kernel
@@ -264,7 +268,7 @@ def keep_ends(both, front, best, minima, counts):
     """Keep the ends of edges' leaves under faces, of all pairs of leaves that do not rest."""
     for k in range(int(front.store[N_ROWS])):
         o, r = CONTACT_REALS * k, front.rows
-        rests = r[o + C_REST] > front.store[GONE] and r[o + C_TOLD] != HELD
+        rests = r[o + C_REST] > front.store[GONE] and r[o + C_TOLD] not in (HELD, CAME)
         if r[o + C_A] >= 0.0 and not rests:
             keep_end(both, (int(r[o + C_A]), int(r[o + C_B])), best, minima, counts)
 
@@ -276,19 +280,19 @@ def look_at_rows(both, front, radius, retried, best, minima, counts):
         if not is_to_be_looked_at(front, k, retried):
             k += 1
         elif front.rows[CONTACT_REALS * k + C_A] >= 0.0:
-            look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
+            look_at_leaves(both, front, k, 1.0 / radius, retried, best, minima, counts)
             k += 1
         elif not look_at_nodes(both.a, both.b, front, k, radius, best, counts):
             k += 1
 
 
 @kernel
-def look_at_woken(both, front, radius, best, minima, counts):
+def look_at_woken(both, front, radius, retried, best, minima, counts):
     """Those that were woken after their turn."""
     for k in range(int(front.store[N_ROWS])):
         o = CONTACT_REALS * k
         if front.rows[o + C_TOLD] == CAME_TO_NONE and front.rows[o + C_REST] == -inf:
-            look_at_leaves(both, front, k, 1.0 / radius, best, minima, counts)
+            look_at_leaves(both, front, k, 1.0 / radius, retried, best, minima, counts)
 
 
 @shared
@@ -306,7 +310,7 @@ def find_contacts(both, front, radius, retried, best, minima, counts):
     follow_signed(both.a, both.b, both.fans, front, inf, best, minima, counts)
     wake_ended(both, front, best[ABOVE])
     look_at_rows(both, front, radius, retried, best, minima, counts)
-    look_at_woken(both, front, radius, best, minima, counts)
+    look_at_woken(both, front, radius, retried, best, minima, counts)
     if is_pressed(best, minima):
         keep_ends(both, front, best, minima, counts)
     if store[MAKING] > 0.0 and best[LOST] == 0.0:

@@ -27,6 +27,7 @@ from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, outward_norm
 from standoff.kernels.solids.spatial_progress import ball_round, middle
 from standoff.kernels.solids.spatial_tolerances import (
     CONTACT_ERROR,
+    CONTACT_ROUNDED,
     FLAT_VALLEY,
     NEARLY_LEVEL,
     PARALLEL_EDGES,
@@ -134,6 +135,8 @@ def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
         if not new_error < most:
             break
         q, n, d, error, ja, jb = trial, new_n, new_d, new_error, ka, kb
+        if error <= CONTACT_ROUNDED:
+            break
     return error <= CONTACT_ERROR, q, n, d
 
 

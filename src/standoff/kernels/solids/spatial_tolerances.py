@@ -82,6 +82,8 @@ ONE_PATCH: Final = 0.95
 CONTACT_ERROR: Final = 1e-9
 """Relative, of the sizes and of unit tangents: an error of the contact-regular form below which its
 Newton's method has come to an end, some thousand roundings of the least of its pivots."""
+CONTACT_ROUNDED: Final = 1e-15
+"""The same, where no step makes it less: some roundings."""
 PARALLEL_EDGES: Final = 1e-5
 """Sine: edges at a smaller angle have no common normal of their own; `PIVOT` is its square."""
 FELT_SPARE: Final = 1e-6
