@@ -54,6 +54,9 @@ SLOPE_NOISE = 8.0
 # A pcurve hit may lie this far (radians or parameter units) outside its range: at a corner the
 # line must not slip between two edges.
 PCURVE_OVERLAP = 1e-12
+# Of the spread of a Bezier curve's points: a line so far off their hull meets neither the curve nor
+# what `PCURVE_OVERLAP` adds to it at a degree of at most 9.
+HULL_SPARE = 1e-9
 
 # A point known no better than this (parameter units, relative) may lie outside by roundoff.
 PARAMETER_NOISE = 1e-14

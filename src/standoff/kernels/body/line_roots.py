@@ -4,13 +4,19 @@ Lines and conics in closed form; a Bezier piece turns by less than 180 degrees, 
 at most twice, on both sides of the one point that is farthest along the line's normal.
 """
 
-from math import atan2, hypot, pi
+from math import atan2, hypot, inf, pi
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.jets import pcurve_jet
 from standoff.kernels.compiler.decorators import uncontracted
-from standoff.kernels.tolerances import BRACKET_ROUNDINGS, EPS, NEAR_TANGENT, PCURVE_OVERLAP
+from standoff.kernels.tolerances import (
+    BRACKET_ROUNDINGS,
+    EPS,
+    HULL_SPARE,
+    NEAR_TANGENT,
+    PCURVE_OVERLAP,
+)
 
 HALF_TURN = pi
 # Instead of a count: the line touches the curve but for noise, and its two roots are one. Then
@@ -92,8 +98,24 @@ def bracketed(reals, o, line, which, start, end):
 
 
 @uncontracted
+def is_off_line(reals, o, line, noise):
+    """Do all points of a Bezier pcurve lie on one side of a line, and not near it? Then so does
+    the curve, which is in their hull, and a little beyond its ends."""
+    a, b, c = line
+    low, high, weight = inf, -inf, 0.0
+    for i in range(int(reals[o]) + 1):
+        p = o + 1 + 3 * i
+        f = a * reals[p] + b * reals[p + 1] + c * reals[p + 2]
+        low, high, weight = min(low, f), max(high, f), max(weight, reals[p + 2])
+    spare = HULL_SPARE * (high - low) + noise * weight * hypot(a, b)
+    return low > spare or high < -spare
+
+
+@uncontracted
 def bezier_roots(reals, o, line, noise):
     a, b, _ = line
+    if is_off_line(reals, o, line, noise):
+        return 0, 0.0, 0.0
     first, last = reals[o - 2], reals[o - 1]
     margin = PCURVE_OVERLAP * (last - first)
     t0, t1 = first - margin, last + margin

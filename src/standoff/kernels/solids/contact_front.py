@@ -13,11 +13,16 @@ from math import inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import norm, sub
+from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_ends import is_pressed, keep_end
-from standoff.kernels.solids.contact_minimum import middles_of, moved_side, nearest_moved_apart
+from standoff.kernels.solids.contact_minimum import (
+    first_normal,
+    middles_of,
+    moved_side,
+    nearest_moved_apart,
+)
 from standoff.kernels.solids.contact_search import (
     follow_signed,
     keep_signed,
@@ -36,7 +41,7 @@ from standoff.kernels.solids.front_minima import RESTS
 from standoff.kernels.solids.front_rows import FRAME, GONE, MAKING, N_BRANCHES, N_MADE, N_ROWS
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
 from standoff.kernels.solids.spatial_minimum import jets_at
-from standoff.kernels.solids.spatial_pieces import ZERO, leaf_box, leaf_ints
+from standoff.kernels.solids.spatial_pieces import ZERO, along, leaf_box, leaf_ints, leaf_jet
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BUDGET,
@@ -45,8 +50,9 @@ from standoff.kernels.solids.spatial_progress import (
     N_MINIMA,
     NODE_PAIRS,
     ROUNDING,
-    ball_round,
+    SIZE,
     evaluations,
+    middle,
 )
 from standoff.kernels.solids.spatial_search import node_ints
 from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
@@ -127,41 +133,76 @@ def look_at_nodes(a, b, front, k, radius, best, counts):
 
 
 @kernel
-def is_near(side, leaf, other, x, reach):
-    """Is a leaf of the same feature as another one, or as near as `reach` to a point?"""
-    r = leaf_ints(side, leaf)
-    if other >= 0 and side.own[r + S.FEATURE] == side.own[leaf_ints(side, other) + S.FEATURE]:
+def is_near(side, leaf, x, reach):
+    """Is a leaf as near as `reach` to a point, as far as it reaches towards it?"""
+    box = leaf_box(side, leaf)
+    u, v = middle(box)
+    jet = leaf_jet(side, leaf, u, v)
+    delta = sub(x, jet[0])
+    away = norm(delta)
+    if away <= reach:
         return True
-    ball = ball_round(S.Part(side, leaf, leaf_box(side, leaf)))
-    return norm(sub(ball[0], x)) <= ball[1] + reach
+    half = 0.5 * (box.u1 - box.u0), 0.5 * (box.v1 - box.v0)
+    return away - along(side, leaf, jet, scale(1.0 / away, delta), half) <= reach
 
 
 @kernel
-def wake(both, front, leaves, x, y, reach):
-    """Look again in the pairs of leaves in which Newton's method came to no common normal, where
-    they are of the features of `leaves`, -1: none, or as near as `reach` to a pair of points."""
+def is_of_one_feature(side, leaf, other):
+    return (
+        side.own[leaf_ints(side, leaf) + S.FEATURE] == side.own[leaf_ints(side, other) + S.FEATURE]
+    )
+
+
+@kernel
+def waits(front, k):
+    """Is a row a pair of leaves in which Newton's method came to no common normal, and that is not
+    to be looked at in this frame anyway?"""
+    o, r = CONTACT_REALS * k, front.rows
+    none = r[o + C_TOLD] == CAME_TO_NONE and r[o + C_REST] <= front.store[GONE]
+    return none or r[o + C_TOLD] == HELD
+
+
+@kernel
+def wake(both, front, x, y, reach, at_once):
+    """Look again in the pairs of leaves in which Newton's method came to no common normal, and
+    which are as near as `reach` to a pair of points: at once, or in turn."""
     rows = front.rows
     for k in range(int(front.store[N_ROWS])):
         o = CONTACT_REALS * k
-        none = rows[o + C_TOLD] == CAME_TO_NONE and rows[o + C_REST] <= front.store[GONE]
-        if not (none or rows[o + C_TOLD] == HELD):
-            continue
-        if is_near(both.a, int(rows[o + C_A]), leaves[0], x, reach) and is_near(
-            both.b, int(rows[o + C_B]), leaves[1], y, reach
+        if (
+            waits(front, k)
+            and is_near(both.a, int(rows[o + C_A]), x, reach)
+            and is_near(both.b, int(rows[o + C_B]), y, reach)
         ):
-            rows[o + C_REST], rows[o + C_TOLD] = -inf, CAME_TO_NONE
+            rows[o + C_TOLD] = CAME_TO_NONE
+            rows[o + C_REST] = -inf if at_once else min(rows[o + C_REST], front.store[GONE])
+
+
+@kernel
+def wake_alike(both, front, leaves):
+    """Look again, in turn, in those of the features of a pair of leaves."""
+    rows = front.rows
+    for k in range(int(front.store[N_ROWS])):
+        o = CONTACT_REALS * k
+        if (
+            rows[o + C_TOLD] == HELD
+            and is_of_one_feature(both.a, int(rows[o + C_A]), leaves[0])
+            and is_of_one_feature(both.b, int(rows[o + C_B]), leaves[1])
+        ):
+            rows[o + C_TOLD], rows[o + C_REST] = CAME_TO_NONE, front.store[GONE]
 
 
 @kernel
 def wake_ended(both, front, reach):
-    """A branch that has ended may go on anywhere on its features."""
+    """A branch that has ended may go on beside where it was, or anywhere on its features."""
     r = front.branches
     for i in range(int(front.store[N_BRANCHES])):
         b = BRANCH_REALS * i
         if r[b + B_TAKEN] == 0.0:
             leaves = int(r[b + B_LEAVES]), int(r[b + B_LEAVES + 1])
             x, y = read_vector(r, b + B_POINTS), read_vector(r, b + B_POINTS + 3)
-            wake(both, front, leaves, x, y, reach)
+            wake_alike(both, front, leaves)
+            wake(both, front, x, y, reach, True)
 
 
 @kernel
@@ -172,14 +213,15 @@ def place_of(row, o):
 @kernel
 def wake_beside(both, front, k, q, best):
     """A common normal has left the leaves of a row, towards parameters `q` as Newton's method
-    tells: look again in those where it may be now."""
+    tells: look again in those where it may be now; in turn where boundaries are apart."""
     r, o = front.rows, CONTACT_REALS * k
     leaf_a, leaf_b = int(r[o + C_A]), int(r[o + C_B])
     ja, jb = jets_at(both.a, leaf_a, both.b, leaf_b, place_of(r, o))
     ka, kb = jets_at(both.a, leaf_a, both.b, leaf_b, q)
     went = max(norm(sub(ka[0], ja[0])), norm(sub(kb[0], jb[0])))
     reach = PAST_LEAF * went if went > 0.0 else best[ABOVE]
-    wake(both, front, (-1, -1), ja[0], jb[0], reach)
+    n = first_normal(both.a, leaf_a, ja, both.b, leaf_b, jb, best[SIZE])
+    wake(both, front, ja[0], jb[0], reach, dot(n, sub(jb[0], ja[0])) <= 0.0)
 
 
 @kernel

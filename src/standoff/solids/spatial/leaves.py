@@ -39,7 +39,7 @@ from standoff.solids.spatial.trims import Piece, edge_ranges
 WIDEST = 0.5
 # Of that, what a part of a turn is made to take.
 NARROW = 0.95
-# Parts of the size: longest side of a leaf, of one that a trimming curve cuts, and of such a plane.
+# Parts of the size: longest side of a leaf, of one that a trimming curve cuts, and of a plane.
 LONGEST, LONGEST_CUT, LONGEST_PLANE = 0.5, 0.12, 0.25
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
@@ -81,8 +81,10 @@ def face_leaves(
         wide = np.stack([d[:, 0] * (waiting[:, 1] - waiting[:, 0]),
                          d[:, 1] * (waiting[:, 3] - waiting[:, 2])])  # fmt: skip
         cut = np.array([len(c) > 0 for c in cuts])
-        shortest = LONGEST_PLANE if chart.surface.kind == L.PLANE else LONGEST_CUT
-        too_long = wide.max(axis=0) > np.where(cut, shortest, LONGEST) * size
+        longest = np.where(cut, LONGEST_CUT, LONGEST)
+        if chart.surface.kind == L.PLANE:
+            longest[:] = LONGEST_PLANE
+        too_long = wide.max(axis=0) > longest * size
         split = (bounds.angle > WIDEST) | too_long
         if depth == MOST_HALVINGS:
             split[:] = False
