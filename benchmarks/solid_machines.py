@@ -152,8 +152,10 @@ def ticked(operator: sim.Operator, ticks: int) -> Ticks:
 def counted(system: sim.System, data: np.ndarray) -> np.ndarray:
     """Pairs of leaves that do not rest, places and spots of a state."""
     found = np.zeros(3)
-    for k in range(sum(system.of_solids)):
-        kept = data[state_length(system) + P.KEPT_REALS * k :]
+    for at, met in zip(system.kept_starts(), system.of_solids, strict=False):
+        if not met:
+            continue
+        kept = data[state_length(system) + at :]
         store = kept[P.F_STORE :]
         rows = kept[P.F_ROWS :][: C.CONTACT_REALS * int(store[R.N_ROWS])].reshape(
             -1, C.CONTACT_REALS

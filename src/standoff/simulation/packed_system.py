@@ -13,7 +13,7 @@ from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.simulation.flat_parts import pack_flat_parts
 from standoff.simulation.near_pairs import NearRows
 from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
-from standoff.simulation.solid_parts import kept_length, pack_solids, pair_numbers
+from standoff.simulation.solid_parts import pack_solids, pair_numbers, room_for_rows
 from standoff.simulation.system import System
 from standoff.simulation.system_state import state_length
 from standoff.solids.spatial.solid_model import SolidModel
@@ -37,9 +37,9 @@ def pack_system(
     `near`, ticks search for near pairs.
     """
     tool = -1 if system.tool is None else system.tool
-    n_solid = sum(system.of_solids)
-    solids_at = state_length(system) if n_solid else 0
-    polytopes = state_length(system) + kept_length(n_solid) if kept else 0
+    after = state_length(system)
+    solids_at = after if any(system.of_solids) else 0
+    polytopes = after + system.kept_starts()[-1] if kept else 0
     layout = [len(system.bodies), len(system.pairs), method, int(inside), tool, 0, 1, polytopes]
     layout += [0, 0, solids_at]  # of the search for near pairs
     numbers = [*system.gravity, dt]
@@ -105,13 +105,13 @@ def _pair_rows(system: System) -> tuple[list[int], list[float]]:
     """(integers, numbers) of all pairs."""
     rows: list[int] = []
     numbers: list[float] = []
-    solid = 0
+    starts = system.kept_starts()
     for number, (pair, contact) in enumerate(zip(system.pairs, system.contacts, strict=True)):
         met = system.of_solids[number]
-        rows += [*pair, solid if met else -1]
-        solid += met
+        models = system.pair_models(number)
+        rows += [*pair, starts[number] if met else -1, room_for_rows(models)]
         numbers += [contact.stiffness, contact.damping, contact.friction, contact.slip_speed]
-        numbers += pair_numbers(system.pair_models(number), system.depth(number))
+        numbers += pair_numbers(models, system.depth(number))
     return rows, numbers
 
 

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import flat_parts as F
-from standoff.kernels.solids.contact_places import KEPT_REALS
+from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.contact_front import CONTACT_REALS
+from standoff.kernels.solids.contact_places import F_ROWS, MOST_ROWS
 from standoff.simulation.flat_parts import FlatParts, flat_parts
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.solid_model import SolidModel
@@ -28,6 +30,11 @@ SOLID_SPRINGS = 8.0
 
 SHARING_SPAN = 0.1
 """Of the smaller solid's size: spots of contact nearer than this to each other share a spring."""
+
+
+LEAST_ROWS, ROWS_A_LEAF = 2048, 24
+"""Room for pairs of pieces, at least, and for each leaf of both solids: a nut of two turns on its
+bolt has 8 a leaf, a peg in its hole 4, and parts that lie on each other more for some ticks."""
 
 
 class PackedSolids(NamedTuple):
@@ -64,9 +71,18 @@ def contact_model(body: Body | SolidModel) -> SolidModel:
     return model
 
 
-def kept_length(n_pairs: int) -> int:
-    """How many numbers pairs of solids keep from tick to tick."""
-    return KEPT_REALS * n_pairs
+def room_for_rows(models: tuple[SolidModel, SolidModel] | None) -> int:
+    """For how many pairs of pieces there is room in what a pair of solids keeps from tick to tick;
+    0 where neither is a solid."""
+    if models is None:
+        return 0
+    leaves = sum(int(model.packed[2][S.N_LEAVES]) for model in models)
+    return min(max(ROWS_A_LEAF * leaves, LEAST_ROWS), MOST_ROWS)
+
+
+def kept_length(rows: int) -> int:
+    """How many numbers a pair of solids keeps with room for so many rows."""
+    return F_ROWS + CONTACT_REALS * rows if rows else 0
 
 
 def pack_solids(models: tuple[SolidModel | None, ...]) -> PackedSolids:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import accumulate, combinations
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,13 @@ from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.flat_parts import FlatParts
 from standoff.simulation.rigid_body import FIXED, FREE, RigidBody
-from standoff.simulation.solid_parts import SOLID_SPRINGS, contact_model, flats_of
+from standoff.simulation.solid_parts import (
+    SOLID_SPRINGS,
+    contact_model,
+    flats_of,
+    kept_length,
+    room_for_rows,
+)
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.inputs import check_pair
 
@@ -176,6 +182,12 @@ class System(KeepsReadOnly):
         """Both bodies of a pair as solids, where one of them is one."""
         a, b = (self.models[k] for k in self.pairs[pair])
         return (a, b) if self.of_solids[pair] and a and b else None
+
+    def kept_starts(self) -> list[int]:
+        """Where what each pair keeps from tick to tick begins among what all pairs do, and how many
+        numbers these are."""
+        lengths = (kept_length(room_for_rows(self.pair_models(k))) for k in range(len(self.pairs)))
+        return [0, *accumulate(lengths)]
 
     def convex_pair(self, pair: int) -> tuple[Body, Body]:
         """Both bodies of a pair without a solid."""

@@ -16,7 +16,6 @@ from standoff.read_only import KeepsReadOnly
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.coupler_state import CouplerState, packed_state, unpacked_state
 from standoff.simulation.rigid_body import FREE
-from standoff.simulation.solid_parts import kept_length
 from standoff.simulation.solid_places import SolidContact, solid_contact
 from standoff.simulation.system import System
 
@@ -106,9 +105,9 @@ class SystemState(KeepsReadOnly):
                 "pair",
                 pair,
             )
-        number = sum(self.system.of_solids[:pair])
-        at = state_length(self.system) + kept_length(number)
-        kept = self.data[at : at + kept_length(1)]
+        at = state_length(self.system)
+        first, last = self.system.kept_starts()[pair : pair + 2]
+        kept = self.data[at + first : at + last]
         return solid_contact(kept, self.pose(self.system.pairs[pair][0]))
 
     @property

@@ -31,9 +31,10 @@ INT_HEADER = 11
 # among the solids' stand, 0 for one that meets no solid and is none.
 B_KIND, B_INTS, B_REALS, B_DRIVEN, B_FLATS, B_SOLID = range(6)
 INT_BODY = 6
-# A pair: the numbers of its two bodies, and its place among the pairs of solids, -1 for another.
-P_SOLID = 2
-INT_PAIR = 3
+# A pair: the numbers of its two bodies; of a pair of solids where what it keeps begins among what
+# all of them do, -1 for another, and for how many rows of pairs of pieces there is room in it.
+P_SOLID, P_ROWS = 2, 3
+INT_PAIR = 4
 
 # Numbers of a system: gravity (3), the step, a row a body, a row a pair, the flat parts, then those
 # of a coupler (``coupler_arrays``).
@@ -150,8 +151,14 @@ def bodies_of(system, pair):
 
 @kernel
 def solid_pair(system, pair):
-    """A pair's place among the pairs of solids; -1 for another."""
+    """Where what a pair of solids keeps begins among what all of them do; -1 for another pair."""
     return system.layout[INT_HEADER + INT_BODY * n_bodies(system) + INT_PAIR * pair + P_SOLID]
+
+
+@kernel
+def kept_rows(system, pair):
+    """For how many rows of pairs of pieces there is room in what a pair of solids keeps."""
+    return system.layout[INT_HEADER + INT_BODY * n_bodies(system) + INT_PAIR * pair + P_ROWS]
 
 
 @kernel

@@ -23,6 +23,7 @@ from standoff.kernels.dynamics.arrays import (
     bodies_of,
     body_ints,
     body_row,
+    kept_rows,
     n_pairs,
     pair_numbers,
     pair_row,
@@ -41,7 +42,6 @@ from standoff.kernels.solids.contact_places import (
     F_MADE,
     F_PLACES,
     F_SPOTS,
-    KEPT_REALS,
     P_A,
     P_B,
     P_DISTANCE,
@@ -100,7 +100,7 @@ def is_of_solids(system, pair):
 @kernel
 def kept_row(system, pair):
     """Where in the state stands what a pair of solids has kept."""
-    return system.layout[I_SOLIDS] + KEPT_REALS * solid_pair(system, pair)
+    return system.layout[I_SOLIDS] + solid_pair(system, pair)
 
 
 @kernel
@@ -148,7 +148,7 @@ def find_places(system, pair, state, counts, scratch):
     for k in range(N_COUNT_SLOTS):
         counts[k] = 0
     span = system.numbers[pair_numbers(system, pair) + P_SPAN]
-    choices = Choices(span, 0.0, MOST_RETRIED_IN)
+    choices = Choices(span, 0.0, MOST_RETRIED_IN, kept_rows(system, pair))
     contact_frame(both_of(system, pair, pose), kept, choices, best, counts)
 
 

@@ -11,6 +11,7 @@ from standoff.kernels.entries.solids import SOLIDS, STILL, side_at
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_frame import Choices, contact_frame
 from standoff.kernels.solids.contact_front import Both
+from standoff.kernels.solids.contact_places import MOST_ROWS
 from standoff.kernels.solids.contact_proof import parts_pieces
 from standoff.kernels.solids.contact_search import search_signed
 from standoff.kernels.solids.contact_sets import gather_signed
@@ -50,7 +51,7 @@ def follow_contact(solids, pose, fans, kept, room, asked, counts):
         c[k] = 0
     both = Both(a, b, (fans_at(fans[0]), fans_at(fans[1])))
     # poses of a track may be far from each other: all pairs of leaves are tried in each frame
-    choices = Choices(inf, asked[0], 1)
+    choices = Choices(inf, asked[0], 1, MOST_ROWS)
     return contact_frame(both, pointer(kept, 0), choices, pointer(room, 0), c)
 
 

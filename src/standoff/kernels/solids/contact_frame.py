@@ -35,12 +35,14 @@ CONTACT_ROOM = AT_MERGED + MERGED_REALS * MOST_MERGED
 
 class Choices(NamedTuple):
     """What a route chooses: the length within which spots share a spring; how much of the length up
-    to which places are looked for is for their patches alone; and of how many frames in one, 4 at
-    most, Newton's method is tried again where it came to none."""
+    to which places are looked for is for their patches alone; of how many frames in one, 4 at
+    most, Newton's method is tried again where it came to none; and for how many rows of the front
+    there is room in what is kept."""
 
     shared: Any
     wider: Any
     retried: Any
+    rows: Any
 
 
 @kernel
@@ -58,7 +60,7 @@ def contact_frame(both, kept, choices, room, counts):
     if kept[F_MADE] > 0.0:
         last = S.Side(b.ints, b.reals, b.own, b.numbers, pose_at(kept), b.sense)
         step, radius = motion_between(last, b, best[SIZE])
-    front = kept_front(kept, ahead(room, AT_MERGED))
+    front = kept_front(kept, choices.rows, ahead(room, AT_MERGED))
     front.store[GONE] += step
     if front.store[GONE] > FARTHEST_GONE * best[SIZE]:
         front.store[N_ROWS], front.store[GONE] = 0.0, 0.0

@@ -94,10 +94,10 @@ class Asked(NamedTuple):
 
 
 @kernel
-def kept_front(kept, merged):
-    """The front in a block of what is kept of a pair."""
+def kept_front(kept, most, merged):
+    """The front in a block of what is kept of a pair, with room for so many rows."""
     rows = ahead(kept, F_ROWS)
-    return Front(ahead(kept, F_STORE), rows, rows, MOST_ROWS, ahead(kept, F_BRANCHES), merged)
+    return Front(ahead(kept, F_STORE), rows, rows, most, ahead(kept, F_BRANCHES), merged)
 
 
 @kernel
