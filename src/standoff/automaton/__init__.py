@@ -1,4 +1,7 @@
-"""The hybrid automaton that a run went through: features and switches, as a graph."""
+"""The hybrid automaton that a run went through: features and switches, as a graph.
+
+Of solids one for each local minimum, in parallel.
+"""
 
 from typing import TYPE_CHECKING
 
@@ -6,6 +9,7 @@ from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
     from standoff.automaton.graph import Automaton, Transition
+    from standoff.automaton.parallel import BranchAutomaton, BranchEvent, SolidAutomaton
     from standoff.automaton.visits import Visit
 else:
     __getattr__, __dir__ = on_demand(
@@ -15,12 +19,20 @@ else:
                 "Automaton",
                 "Transition",
             ),
+            "standoff.automaton.parallel": (
+                "BranchAutomaton",
+                "BranchEvent",
+                "SolidAutomaton",
+            ),
             "standoff.automaton.visits": ("Visit",),
         },
     )
 
 __all__ = [
     "Automaton",
+    "BranchAutomaton",
+    "BranchEvent",
+    "SolidAutomaton",
     "Transition",
     "Visit",
 ]

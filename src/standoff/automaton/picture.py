@@ -8,8 +8,9 @@ from typing import BinaryIO
 import numpy as np
 import scipy
 
-from standoff.automaton.graph import Automaton, Transition, mode_of
+from standoff.automaton.graph import Automaton, Transition
 from standoff.automaton.text import MOST_DRAWN, Names, moves, product_switches
+from standoff.automaton.visits import mode_of
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.errors import not_installed
