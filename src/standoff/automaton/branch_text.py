@@ -22,7 +22,7 @@ from standoff.automaton.visits import Mode, Visit, mode_of
 from standoff.tracking.branches import Birth, End
 from standoff.wording import counted, printable
 
-MOST_LISTED = 200
+MOST_LISTED = 100
 """Most switches of one solid that are listed; of more only their number is told."""
 
 
@@ -65,7 +65,9 @@ def _solids(automaton: SolidAutomaton, names: Names) -> list[list[str]]:
 
 def _branch_lines(automaton: SolidAutomaton, branch: BranchAutomaton) -> list[str]:
     spans = ", ".join(f"{start:.6g} s to {end:.6g} s" for start, end in branch.nearest)
-    head = f"branch {branch.key}: " + (f"the nearest from {spans}" if spans else "never the nearest")
+    head = f"branch {branch.key}: " + (
+        f"the nearest from {spans}" if spans else "never the nearest"
+    )
     rows = [("  mode (A – B)", "visits", "time", "entered at")]
     for mode in branch.visited:
         stays = branch.stays(mode)

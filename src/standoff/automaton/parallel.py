@@ -105,8 +105,9 @@ class SolidAutomaton(Course):
         By key.
     events : tuple of BranchEvent
         What happens between branches, in order of time.
-    visits, taken
-        Those of all branches, in order of time.
+    visits : tuple of Visit
+    taken : tuple of (float, Transition)
+        Those of all branches, one branch after the other.
     """
 
     names: tuple[str, str]
@@ -215,8 +216,8 @@ def automaton_of_branches(
     events : sequence of BranchEvent
         In order of time.
     """
-    visits = sorted((v for each in branches for v in each.visits), key=lambda v: v.start)
-    taken = sorted((t for each in branches for t in each.taken), key=lambda t: t[0])
+    visits = [visit for each in branches for visit in each.visits]
+    taken = [switch for each in branches for switch in each.taken]
     if listed is None:
         listed = SolidAutomaton(
             names,
