@@ -17,6 +17,7 @@ from standoff.automaton.visits import Course, Mode, Visit
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.tracking.branches import NONE, Birth, End
+from standoff.wording import counted, short_name
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,7 +60,7 @@ class BranchEvent(NamedTuple):
     located: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BranchAutomaton(Course):
     """The modes that one local minimum went through.
 
@@ -85,8 +86,12 @@ class BranchAutomaton(Course):
     nearest: tuple[tuple[float, float], ...]
     events: tuple[BranchEvent, ...]
 
+    def __repr__(self) -> str:
+        modes = counted(len(self.visited), "mode")
+        return f"<BranchAutomaton {self.key}: {modes} visited>"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class SolidAutomaton(Course):
     """The automata of all local minima of two solids, in parallel.
 
@@ -120,6 +125,13 @@ class SolidAutomaton(Course):
     events: tuple[BranchEvent, ...] = ()
     visits: tuple[Visit, ...] = ()
     taken: tuple[tuple[float, Transition], ...] = ()
+
+    def __repr__(self) -> str:
+        names = " and ".join(map(short_name, self.names))
+        branches = counted(len(self.branches), "branch", "branches")
+        return (
+            f"<SolidAutomaton of {names}: {branches}, {counted(len(self.visited), 'mode')} visited>"
+        )
 
     @property
     def listed(self) -> bool:

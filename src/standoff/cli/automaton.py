@@ -142,7 +142,7 @@ def _bare(scene: Scene) -> Automaton | SolidAutomaton:
                 key="pair",
                 file=scene.file,
             )
-    return solid_automaton(*(getattr(shape, "given", shape) for shape in (a, b)))
+    return solid_automaton(getattr(a, "given", a), getattr(b, "given", b))
 
 
 def _text(form: str, found: Automaton | SolidAutomaton, scene: Scene) -> str:
