@@ -262,7 +262,7 @@ def test_pictures(
         for branch in drawn.branches:
             assert f"<!-- branch {branch.key} -->" in text
         for event in drawn.events:
-            assert event.reason is None or f"<!-- {event.reason.name} -->" in text
+            assert event.reason is None or f"<!-- {event.reason.name}" in text
     with pytest.raises(ValueError, match="ends in"):
         found.plot(tmp_path / "a.gif")
 

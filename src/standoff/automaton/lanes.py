@@ -48,6 +48,7 @@ def draw_lanes(axes: Axes, automaton: SolidAutomaton) -> None:
     rows, total = rows_of(automaton)
     start = min(event.time for event in automaton.events)
     end = max(visit.end for visit in automaton.visits)
+    axes.set_xlim(start, end)
     for branch in automaton.branches:
         _draw_branch(axes, branch, rows, start)
     for event in automaton.events:
@@ -62,7 +63,6 @@ def draw_lanes(axes: Axes, automaton: SolidAutomaton) -> None:
             fontsize="small",
         )
     axes.set_ylim(total - 0.4, -0.3)
-    axes.set_xlim(start, end)
     axes.set_xlabel("time (s)")
     axes.grid(axis="x", alpha=0.3)
     axes.legend(handles=_legend(), loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5,
@@ -121,9 +121,12 @@ def _draw_event(axes: Axes, automaton: SolidAutomaton, event: BranchEvent, rows:
         ms=6, zorder=4, clip_on=False,
     )  # fmt: skip
     assert event.reason is not None  # of births and ends
+    told = event.reason.name + (f" into {event.other}" if event.other != NONE else "")
+    # Beside what lives shortly there is room on either side.
+    left = born and event.time > axes.get_xlim()[0]
     axes.annotate(
-        event.reason.name, (event.time, here), (6, 0), textcoords="offset points",
-        va="center", fontsize="x-small", zorder=4,
+        told, (event.time, here), (-6 if left else 6, 0), textcoords="offset points",
+        ha="right" if left else "left", va="center", fontsize="x-small", zorder=4,
     )  # fmt: skip
 
 
