@@ -8,22 +8,19 @@ from typing import TYPE_CHECKING
 from standoff.on_demand import on_demand
 
 if TYPE_CHECKING:
-    from standoff.automaton.graph import Automaton, Transition
-    from standoff.automaton.parallel import BranchAutomaton, BranchEvent, SolidAutomaton
+    from standoff.automaton.branches import BranchAutomaton, BranchEvent
+    from standoff.automaton.graph import Automaton
+    from standoff.automaton.parallel import SolidAutomaton
+    from standoff.automaton.transitions import Transition
     from standoff.automaton.visits import Visit
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
         {
-            "standoff.automaton.graph": (
-                "Automaton",
-                "Transition",
-            ),
-            "standoff.automaton.parallel": (
-                "BranchAutomaton",
-                "BranchEvent",
-                "SolidAutomaton",
-            ),
+            "standoff.automaton.branches": ("BranchAutomaton", "BranchEvent"),
+            "standoff.automaton.graph": ("Automaton",),
+            "standoff.automaton.parallel": ("SolidAutomaton",),
+            "standoff.automaton.transitions": ("Transition",),
             "standoff.automaton.visits": ("Visit",),
         },
     )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Protocol
 
-from standoff.automaton.graph import Transition
+from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Visit, mode_of
 from standoff.bodies.features import Feature
 from standoff.errors import not_installed

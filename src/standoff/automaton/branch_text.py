@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from standoff.automaton.parallel import BranchAutomaton, BranchEvent, SolidAutomaton
+from standoff.automaton.branches import BranchAutomaton, BranchEvent, ParallelBranches
 from standoff.automaton.text import (
     LEGEND,
     MOST_LABELLED,
@@ -26,7 +26,7 @@ MOST_LISTED = 100
 """Most switches of one solid that are listed; of more only their number is told."""
 
 
-def branches_text(automaton: SolidAutomaton, names: Names = ("A", "B")) -> str:
+def branches_text(automaton: ParallelBranches, names: Names = ("A", "B")) -> str:
     """Return what both solids allow, each branch with its visited modes and switches, and what
     happens between branches, line by line."""
     branches, switches = len(automaton.branches), len(automaton.taken)
@@ -47,7 +47,7 @@ def branches_text(automaton: SolidAutomaton, names: Names = ("A", "B")) -> str:
     return "\n\n".join("\n".join(lines) for lines in parts)
 
 
-def _solids(automaton: SolidAutomaton, names: Names) -> list[list[str]]:
+def _solids(automaton: ParallelBranches, names: Names) -> list[list[str]]:
     if automaton.a is None or automaton.b is None:
         what = f"{printable(names[0])} and {printable(names[1])}"
         return [[f"{what} are not in the recording: only what was visited and taken is listed."]]
@@ -63,7 +63,7 @@ def _solids(automaton: SolidAutomaton, names: Names) -> list[list[str]]:
     return found
 
 
-def _branch_lines(automaton: SolidAutomaton, branch: BranchAutomaton) -> list[str]:
+def _branch_lines(automaton: ParallelBranches, branch: BranchAutomaton) -> list[str]:
     spans = ", ".join(f"{start:.6g} s to {end:.6g} s" for start, end in branch.nearest)
     head = f"branch {branch.key}: " + (
         f"the nearest from {spans}" if spans else "never the nearest"
@@ -93,7 +93,7 @@ def event_told(event: BranchEvent) -> tuple[str, str]:
     return f"{event.other} hands the nearest over to {event.key}", where
 
 
-def branches_mermaid(automaton: SolidAutomaton, names: Names = ("A", "B")) -> str:
+def branches_mermaid(automaton: ParallelBranches, names: Names = ("A", "B")) -> str:
     """Return a Mermaid flowchart: a box of visited modes for each branch, their beginnings and
     ends, and dotted arrows where the nearest is handed over."""
     lines = ["flowchart LR"]
@@ -120,7 +120,7 @@ def branches_mermaid(automaton: SolidAutomaton, names: Names = ("A", "B")) -> st
     return "\n".join(lines)
 
 
-def _solid(automaton: SolidAutomaton, letter: str, name: str) -> list[str]:
+def _solid(automaton: ParallelBranches, letter: str, name: str) -> list[str]:
     transitions = automaton.of(letter)
     if len(transitions) > MOST_LABELLED:
         return [f"  %% {letter} has {len(transitions)} switches: too many to draw"]
@@ -135,7 +135,7 @@ def _solid(automaton: SolidAutomaton, letter: str, name: str) -> list[str]:
     ]
 
 
-def _event_arrow(automaton: SolidAutomaton, k: int, event: BranchEvent) -> list[str]:
+def _event_arrow(automaton: ParallelBranches, k: int, event: BranchEvent) -> list[str]:
     branch = automaton.branch(event.key)
     here = _node_at(branch, event.time, before=event.kind == "end")
     if here is None:

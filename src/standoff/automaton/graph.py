@@ -9,17 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Course, Visit
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels.body import layout as L
-
-Kind = Literal["boundary", "smooth", "release"]
 
 
 class Switch(Protocol):
@@ -33,33 +32,6 @@ class Switch(Protocol):
     def source(self) -> Feature: ...
     @property
     def target(self) -> Feature: ...
-
-
-class Transition(NamedTuple):
-    """A switch that one body's automaton allows.
-
-    Attributes
-    ----------
-    body : "A" or "B"
-    source, target : Feature
-    kind : "boundary", "smooth" or "release"
-        A step reaches the end of a feature; it reaches a smooth edge and continues on the next
-        face; or, at rest, the distance falls into a larger feature, which is the Voronoi test.
-        None where it is not known: of solids, several boundaries between two frames, or two faces
-        of a solid that is not at hand.
-    switching : str
-        When it is taken. n is the unit vector from A to B, and −ε the least slope that counts.
-        Empty where it is not known.
-    reset : str
-        What the parameters become.
-    """
-
-    body: str
-    source: Feature
-    target: Feature
-    kind: Kind | None
-    switching: str
-    reset: str
 
 
 @dataclass(frozen=True, eq=False)

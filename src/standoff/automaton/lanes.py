@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from standoff.automaton.body_panel import QUIET_COLOUR, VISITED_COLOUR, VISITED_FILL
 from standoff.automaton.branch_text import visit_at
-from standoff.automaton.parallel import BranchAutomaton, BranchEvent, SolidAutomaton
+from standoff.automaton.branches import BranchAutomaton, BranchEvent, ParallelBranches
 from standoff.automaton.text import moves
 from standoff.automaton.visits import Mode, mode_of
 from standoff.errors import not_installed
@@ -31,7 +31,7 @@ HEAD = 1.0
 Rows = Mapping[tuple[int, Mode], float]
 
 
-def rows_of(automaton: SolidAutomaton) -> tuple[dict[tuple[int, Mode], float], float]:
+def rows_of(automaton: ParallelBranches) -> tuple[dict[tuple[int, Mode], float], float]:
     """The row of each mode of each branch, downwards, and how many rows there are in all."""
     rows, at = {}, 0.0
     for branch in automaton.branches:
@@ -42,7 +42,7 @@ def rows_of(automaton: SolidAutomaton) -> tuple[dict[tuple[int, Mode], float], f
     return rows, at
 
 
-def draw_lanes(axes: Axes, automaton: SolidAutomaton) -> None:
+def draw_lanes(axes: Axes, automaton: ParallelBranches) -> None:
     """Draw a row for each mode of each branch, bars where it is visited, darker while the branch
     is the nearest, and births, ends and handovers between them."""
     rows, total = rows_of(automaton)
@@ -101,7 +101,7 @@ def _draw_branch(axes: Axes, branch: BranchAutomaton, rows: Rows, start: float) 
         )
 
 
-def _draw_event(axes: Axes, automaton: SolidAutomaton, event: BranchEvent, rows: Rows) -> None:
+def _draw_event(axes: Axes, automaton: ParallelBranches, event: BranchEvent, rows: Rows) -> None:
     here = _row_at(automaton, event.key, event.time, rows, before=event.kind == "end")
     if here is None:
         return
@@ -140,7 +140,7 @@ def _arrow(axes: Axes, time: float, rows: tuple[float, float], colour: str, line
 
 
 def _row_at(
-    automaton: SolidAutomaton, key: int, time: float, rows: Rows, *, before: bool
+    automaton: ParallelBranches, key: int, time: float, rows: Rows, *, before: bool
 ) -> float | None:
     """The row of the mode in which a branch is up to a time [s], or from it on."""
     visit = visit_at(automaton.branch(key).visits, time, before=before)

@@ -14,10 +14,10 @@ from standoff.automaton.body_panel import (
     draw_body,
     rows_of,
 )
+from standoff.automaton.branches import ParallelBranches
 from standoff.automaton.graph import Automaton
 from standoff.automaton.lanes import draw_lanes
 from standoff.automaton.lanes import rows_of as lanes_of
-from standoff.automaton.parallel import SolidAutomaton
 from standoff.automaton.text import MOST_DRAWN, Names, moves, product_switches
 from standoff.bodies.features import Feature
 from standoff.errors import not_installed
@@ -44,7 +44,7 @@ ROW_HEIGHT = 0.3
 def write_automaton(
     file: BinaryIO,
     ending: str,
-    automaton: Automaton | SolidAutomaton,
+    automaton: Automaton | ParallelBranches,
     names: Names = ("A", "B"),
     title: str = "",
 ) -> None:
@@ -69,7 +69,7 @@ def write_automaton(
 
 
 def automaton_figure(
-    automaton: Automaton | SolidAutomaton, names: Names = ("A", "B"), title: str = ""
+    automaton: Automaton | ParallelBranches, names: Names = ("A", "B"), title: str = ""
 ) -> Figure:
     """Draw an automaton: both bodies' features, and under them the modes over time, of solids a
     lane for each branch.
@@ -81,7 +81,7 @@ def automaton_figure(
         What A and B are called.
     title : str
     """
-    most = MOST_DRAWN if isinstance(automaton, SolidAutomaton) and automaton.visits else None
+    most = MOST_DRAWN if isinstance(automaton, ParallelBranches) and automaton.visits else None
     rows = {letter: rows_of(automaton, letter, most) for letter in "AB"}
     node = NODE_WIDTH if most is None else APART
     widths = [
@@ -100,7 +100,7 @@ def automaton_figure(
     for letter, name in zip("AB", names, strict=True):
         told = _body_title(automaton, letter, name, sum(map(len, rows[letter].values())))
         draw_body(axes[letter], automaton, letter, told, rows[letter])
-    if isinstance(automaton, SolidAutomaton):
+    if isinstance(automaton, ParallelBranches):
         if automaton.visits:
             draw_lanes(axes["pair"], automaton)
     elif automaton.visits:
@@ -119,7 +119,7 @@ def automaton_figure(
     return figure
 
 
-def _body_title(automaton: Automaton | SolidAutomaton, letter: str, name: str, shown: int) -> str:
+def _body_title(automaton: Automaton | ParallelBranches, letter: str, name: str, shown: int) -> str:
     body = automaton.a if letter == "A" else automaton.b
     every = len(automaton.features_a if letter == "A" else automaton.features_b)
     if body is None:
@@ -128,9 +128,9 @@ def _body_title(automaton: Automaton | SolidAutomaton, letter: str, name: str, s
     return f"{letter} = {name} ({body.name}){part}"
 
 
-def _height_below(automaton: Automaton | SolidAutomaton) -> float:
+def _height_below(automaton: Automaton | ParallelBranches) -> float:
     """Inches of the lower panel; 0 where the product is too large, or one body's own automaton."""
-    if isinstance(automaton, SolidAutomaton):
+    if isinstance(automaton, ParallelBranches):
         return 1.2 + ROW_HEIGHT * lanes_of(automaton)[1] if automaton.visits else 0.0
     if automaton.visits:
         return 1.0 + ROW_HEIGHT * len(automaton.visited)

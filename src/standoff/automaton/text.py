@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from standoff.automaton.graph import Automaton, Transition, is_smooth
+from standoff.automaton.graph import Automaton, is_smooth
+from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Course, Mode, mode_of
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from standoff.automaton.transitions import Transition
 from standoff.bodies.features import Feature
-
-if TYPE_CHECKING:
-    from standoff.automaton.graph import Transition
 
 Mode = tuple[Feature, Feature]
 

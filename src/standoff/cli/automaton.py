@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from standoff.automaton.branch_text import branches_mermaid, branches_text
 from standoff.automaton.graph import Automaton, automaton
@@ -142,7 +143,8 @@ def _bare(scene: Scene) -> Automaton | SolidAutomaton:
                 key="pair",
                 file=scene.file,
             )
-    return solid_automaton(getattr(a, "given", a), getattr(b, "given", b))
+    solids: list[Any] = [getattr(shape, "given", shape) for shape in (a, b)]
+    return solid_automaton(*solids)
 
 
 def _text(form: str, found: Automaton | SolidAutomaton, scene: Scene) -> str:

@@ -12,15 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff.automaton.graph import Transition
-from standoff.automaton.parallel import (
-    BranchAutomaton,
-    BranchEvent,
-    SolidAutomaton,
-    automaton_of_branches,
-    several,
-    unlisted,
-)
+from standoff.automaton.branches import BranchAutomaton, BranchEvent, several, unlisted
+from standoff.automaton.parallel import SolidAutomaton, automaton_of_branches
+from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Mode, Visit
 from standoff.bodies.features import Feature
 from standoff.errors import StandoffError

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from standoff.automaton.graph import Automaton, Transition
+from standoff.automaton import Automaton, Transition
 from standoff.bodies import Boundary
 from standoff.bodies.tessellation import edge_lines
 from standoff.geometry.validation import Array
