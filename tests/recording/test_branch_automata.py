@@ -192,7 +192,7 @@ def test_what_the_solids_allow_is_listed_as_of_bodies(found: SolidAutomaton) -> 
     assert len(found.of("A")) == 4 * 24 + 4 * 24 + 4
     assert found.of("B") == ()
     assert {t for _, t in found.taken} <= set(found.transitions)
-    box = so.shapes.box(1.0, 0.8, 0.6)
+    box = so.shapes.box(1.0, 0.8, 0.6, rounding=0.1)
     listed = solid_automaton(so.Solid(box).given, FEET.boundary)
     assert listed.of("A") == tuple(body_transitions(box, "A"))
     assert listed.branches == ()
@@ -202,7 +202,8 @@ def test_what_the_solids_allow_is_listed_as_of_bodies(found: SolidAutomaton) -> 
 def test_several_boundaries_at_once_are_no_transition(run: Recording) -> None:
     """As if the ball went from the first top to the second one within a frame: the kind of a switch
     is told only where there is a transition."""
-    for far, kind in ((so.Feature("edge", 22), "boundary"), (so.Feature("face", 4), None)):
+    edge, other_edge, top = so.Feature("edge", 22), so.Feature("edge", 19), so.Feature("face", 4)
+    for far, kind in ((edge, "boundary"), (other_edge, None), (top, None)):
         events = tuple(
             e._replace(features=(far, e.features[1])) if (e.kind, e.key) == ("switch", 0) else e
             for e in run.minima_events
