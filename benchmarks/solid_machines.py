@@ -1,4 +1,4 @@
-"""Machines of solids: a nut that runs down its bolt, and a pair of gears.
+"""Machines of solids: a nut that runs down its bolt, a pair of gears, and a key in its lock.
 
 Run with ``python -m benchmarks.solid_machines --seconds N``: N seconds of each machine's own time.
 Told are what a tick takes, beside a tick of a ball that meets nothing; how many pairs of leaves are
@@ -27,6 +27,7 @@ from standoff.simulation.device_loop import given_readings
 from standoff.simulation.operator import Going
 from standoff.simulation.system_state import SystemState, state_length
 from standoff.solids import Solid
+from standoff_studies.machines.keys import WITHIN, pushed
 from standoff_studies.machines.prisms import extruded
 from standoff_studies.machines.threads import Thread, bolt, nut
 from standoff_studies.soak import solid_parts
@@ -44,6 +45,10 @@ SPEED = 20.0
 """Of the driving gear, radians a second."""
 PIN, BORE_PLAY = 4e-3, 2e-5
 """Radius of the pin that the other gear turns on, and by how much its bore is wider, metres."""
+KEY_PLAY, KEY_SPEED, KEY_STEP = 3e-5, 0.016, 5e-5
+"""Of the key all round, metres; of the hand, m/s; s."""
+KEY_LONGEST = 0.5
+"""s, until the key is all through its lock."""
 GPU = 145.0
 """µs, Newton's nut on a bolt."""
 
@@ -54,6 +59,7 @@ class Machine(NamedTuple):
     name: str
     operator: sim.Operator
     off: Callable[[SystemState, float], str] | None
+    hand: sim.DeviceReadings | None = None
 
 
 def nut_on_bolt() -> Machine:
@@ -118,7 +124,22 @@ def alone() -> Machine:
     return Machine("a ball alone", sim.Operator(system, 1e-4), None)
 
 
-MACHINES = {"nut": nut_on_bolt, "gears": gear_pair}
+def key_in_lock() -> Machine:
+    """A hand pushes a key down and against two walls of its keyway, with friction."""
+    operator, hand = pushed(KEY_PLAY, KEY_SPEED, round(KEY_LONGEST / KEY_STEP), KEY_STEP)
+
+    def off(state: SystemState, turned: float) -> str:
+        x, y, z = state.pose(1).translation
+        behind = z + WITHIN + KEY_SPEED * state.time
+        return (
+            f"{1e3 * (-z - WITHIN):.2f} mm further in, {1e6 * behind:.1f} um behind the hand, "
+            f"{1e6 * np.hypot(x, y):.1f} um beside its axis"
+        )
+
+    return Machine("key in its lock", operator, off, hand)
+
+
+MACHINES = {"nut": nut_on_bolt, "gears": gear_pair, "key": key_in_lock}
 
 
 class Ticks(NamedTuple):
@@ -131,15 +152,16 @@ class Ticks(NamedTuple):
     run: sim.SystemRun
 
 
-def ticked(operator: sim.Operator, ticks: int) -> Ticks:
+def ticked(machine: Machine, ticks: int) -> Ticks:
     """So many ticks, one by one: of each the compiled loop alone is timed."""
-    start = operator.start()
+    operator, hand = machine.operator, machine.hand
+    start = operator.start() if hand is None else operator.start().engage()
     going = Going(operator.room_for(start), start.time, 1)
     states = np.empty((ticks + 1, state_length(operator.system)))
-    accounts = np.empty((ticks + 1, operator.run(start, 1).accounts.shape[1]))
+    accounts = np.empty((ticks + 1, operator.run(start, 1, device=hand).accounts.shape[1]))
     took, worked, counts = np.empty(ticks), np.empty(ticks), np.empty((ticks, 3))
-    readings = given_readings(None, 0, 1)
     for k in range(ticks):
+        readings = given_readings(hand, k, 1)
         rows = slice(k, k + 2)
         began, own = time.perf_counter(), time.thread_time()
         operator._advance(going, k, readings, (states[rows], accounts[rows]))
@@ -179,7 +201,7 @@ def told_times(took: np.ndarray) -> str:
 
 
 def tell(machine: Machine, seconds: float) -> None:
-    found = ticked(machine.operator, max(10, round(seconds / machine.operator.dt)))
+    found = ticked(machine, max(10, round(seconds / machine.operator.dt)))
     run = found.run
     print(f"{machine.name:18s} {told_times(found.took[1:])}")
     print(f"{'    on its core':18s} {told_times(found.worked[1:])}", flush=True)

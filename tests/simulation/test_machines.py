@@ -1,4 +1,4 @@
-"""Machines of solids keep their kinematics: gears their ratio, a nut its pitch."""
+"""Machines of solids keep their kinematics: gears their ratio, a nut its pitch, a key its way."""
 
 from __future__ import annotations
 
@@ -12,6 +12,16 @@ import standoff as so
 from standoff.motion import ConstantTwist
 from standoff.simulation import HuntCrossley, Operator, RigidBody, System, SystemRun
 from standoff.solids import Solid
+from standoff.tracking import Status
+from standoff_studies.machines.keys import (
+    ASIDE,
+    FRICTION,
+    STIFFNESS,
+    WITHIN,
+    key,
+    lock,
+    pushed,
+)
 from standoff_studies.machines.prisms import extruded
 from standoff_studies.machines.threads import Thread, bolt, nut
 from standoff_studies.soak import solid_parts
@@ -57,6 +67,33 @@ def test_gears_keep_their_ratio() -> None:
     assert run.jumps == 0
     assert (run.spots[:, 0] > 0).any()
     assert np.ptp(run.energy.balance) < 0.05 * np.ptp(run.energy.supplied)
+
+
+def test_a_key_slides_into_its_lock() -> None:
+    """A hand pushes it down and aside: two walls carry what is aside, and it rubs along them."""
+    play, speed, dt = 3e-5, 0.1, 5e-5
+    middle = so.Pose(np.eye(3), (0.0, 0.0, -WITHIN))
+    away = so.solids.distance(lock(play, 0.02, 0.012), key(0.025), so.Pose.identity(), middle)
+    assert away.distance == pytest.approx(play, abs=1e-9)
+    assert away.status is Status.CONTINUUM
+    operator, hand = pushed(play, speed, 1200, dt)
+    run = operator.run(operator.start().engage(), 1200, device=hand)
+    settled = slice(2 * len(run.times) // 3, None)
+    # its walls are plane: what is aside leaves play and depth, for all of the blade's teeth
+    assert np.abs(run.positions(1)[:, :2]).max() < 2.0 * (play + run.deepest)
+    assert run.positions(1)[-1, 2] == pytest.approx(-WITHIN - speed * run.times[-1], abs=2e-4)
+    hand_at = np.array(ASIDE) + np.array([1e-6, 0.0])
+    aside = hand_at - run.positions(1)[settled, :2].mean(axis=0)
+    force = run.forces[settled, 0].mean(axis=0)
+    np.testing.assert_allclose(force[:2], -STIFFNESS * aside, rtol=0.02)
+    assert run.uncertified == run.jumps == 0
+    assert run.deepest < play
+    depths = -run.distances[settled, 0]
+    assert np.ptp(depths) < 0.15 * depths.mean()
+    assert run.spots[settled].min() >= 8
+    # no less than friction on what presses it, no more than on two walls that are square
+    rubbed = force[2] / FRICTION
+    assert np.linalg.norm(force[:2]) * 0.98 < rubbed < np.abs(force[:2]).sum() * 1.02
 
 
 @pytest.mark.soak

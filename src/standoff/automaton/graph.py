@@ -9,18 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.automaton.visits import Visit
-from standoff.bodies.body import Body
+from standoff.automaton.transitions import Transition
+from standoff.automaton.visits import Course, Visit
+from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels.body import layout as L
-
-Kind = Literal["boundary", "smooth", "release"]
-Mode = tuple[Feature, Feature]
 
 
 class Switch(Protocol):
@@ -36,37 +34,13 @@ class Switch(Protocol):
     def target(self) -> Feature: ...
 
 
-class Transition(NamedTuple):
-    """A switch that one body's automaton allows.
-
-    Attributes
-    ----------
-    body : "A" or "B"
-    source, target : Feature
-    kind : "boundary", "smooth" or "release"
-        A step reaches the end of a feature; it reaches a smooth edge and continues on the next
-        face; or, at rest, the distance falls into a larger feature, which is the Voronoi test.
-    switching : str
-        When it is taken. n is the unit vector from A to B, and −ε the least slope that counts.
-    reset : str
-        What the parameters become.
-    """
-
-    body: str
-    source: Feature
-    target: Feature
-    kind: Kind
-    switching: str
-    reset: str
-
-
 @dataclass(frozen=True, eq=False)
-class Automaton:
+class Automaton(Course):
     """What `automaton` lists, and, once marked, where a motion went.
 
     Attributes
     ----------
-    a, b : Body
+    a, b : Boundary
     features_a, features_b : tuple of Feature
         Smooth edges are among them: they are passed, and held only if a step would cross them back
         and forth.
@@ -81,8 +55,8 @@ class Automaton:
         Times [s] at which a global start changed the mode in a way that is not a transition.
     """
 
-    a: Body
-    b: Body
+    a: Boundary
+    b: Boundary
     features_a: tuple[Feature, ...]
     features_b: tuple[Feature, ...]
     transitions: tuple[Transition, ...]
@@ -95,22 +69,9 @@ class Automaton:
         """How many modes the pair has."""
         return len(self.features_a) * len(self.features_b)
 
-    @property
-    def visited(self) -> tuple[Mode, ...]:
-        """The modes of the visits, each once, in order of the first visit."""
-        return tuple(dict.fromkeys(mode_of(visit) for visit in self.visits))
-
     def of(self, body: str) -> tuple[Transition, ...]:
         """The transitions of body "A" or "B"."""
         return tuple(t for t in self.transitions if t.body == body)
-
-    def stays(self, mode: Mode) -> list[Visit]:
-        """The visits of one mode, in order of time."""
-        return [visit for visit in self.visits if mode_of(visit) == mode]
-
-    def time_in(self, mode: Mode) -> float:
-        """Time spent in a mode [s]."""
-        return sum(visit.end - visit.start for visit in self.stays(mode))
 
     def marked(self, visits: Sequence[Visit], events: Iterable[Switch]) -> Automaton:
         """Return the automaton with a motion marked: a recording's ``modes()`` and ``events``."""
@@ -125,12 +86,7 @@ class Automaton:
         return replace(self, visits=tuple(visits), taken=tuple(taken), restarts=tuple(restarts))
 
 
-def mode_of(visit: Visit) -> Mode:
-    """The mode of a visit."""
-    return visit.feature_a, visit.feature_b
-
-
-def automaton(a: Body, b: Body) -> Automaton:
+def automaton(a: Boundary, b: Boundary) -> Automaton:
     """List the hybrid automaton of a pair of bodies."""
     return Automaton(
         a,
@@ -141,17 +97,17 @@ def automaton(a: Body, b: Body) -> Automaton:
     )
 
 
-def features_of(body: Body) -> tuple[Feature, ...]:
+def features_of(body: Boundary) -> tuple[Feature, ...]:
     """All features of a body: faces, edges, vertices."""
     return tuple(feature_of(body, k) for k in range(body.n_faces + body.n_edges + body.n_vertices))
 
 
-def is_smooth(body: Body, feature: Feature) -> bool:
+def is_smooth(body: Boundary, feature: Feature) -> bool:
     """Is the feature an edge along which both faces share their normal?"""
     return feature.kind == "edge" and bool(_edge_row(body, feature.index)[L.EDGE_FLAGS] & L.SMOOTH)
 
 
-def body_transitions(body: Body, name: str) -> list[Transition]:
+def body_transitions(body: Boundary, name: str) -> list[Transition]:
     """List one body's transitions; `name` is "A" or "B"."""
     slope = "−n·" if name == "A" else "n·"
     return [
@@ -161,16 +117,16 @@ def body_transitions(body: Body, name: str) -> list[Transition]:
     ]
 
 
-def _edge_row(body: Body, edge: int) -> NDArray[np.int64]:
+def _edge_row(body: Boundary, edge: int) -> NDArray[np.int64]:
     start = int(body.ints[L.EDGES]) + L.EDGE_STRIDE * edge
     return body.ints[start : start + L.EDGE_STRIDE]
 
 
-def _face_of_chart(body: Body, chart: int) -> int:
+def _face_of_chart(body: Boundary, chart: int) -> int:
     return int(body.ints[int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart + L.CHART_FACE])
 
 
-def _sides(body: Body) -> list[tuple[int, int]]:
+def _sides(body: Boundary) -> list[tuple[int, int]]:
     """(face, edge) of every coedge, each once; a collapsed side has -1 - vertex for its edge."""
     found: dict[tuple[int, int], None] = {}
     for chart in range(int(body.ints[L.N_CHARTS])):
@@ -182,7 +138,7 @@ def _sides(body: Body) -> list[tuple[int, int]]:
     return list(found)
 
 
-def _off_faces(body: Body, name: str) -> list[Transition]:
+def _off_faces(body: Boundary, name: str) -> list[Transition]:
     sides = _sides(body)
     faces_of: dict[int, list[int]] = {}
     for face, edge in sides:
@@ -209,7 +165,7 @@ def _off_faces(body: Body, name: str) -> list[Transition]:
     return found
 
 
-def _off_edges(body: Body, name: str, slope: str) -> list[Transition]:
+def _off_edges(body: Boundary, name: str, slope: str) -> list[Transition]:
     found = []
     faces_of: dict[int, list[int]] = {}
     for face, edge in _sides(body):
@@ -230,7 +186,7 @@ def _off_edges(body: Body, name: str, slope: str) -> list[Transition]:
     return found
 
 
-def _off_vertices(body: Body, name: str, slope: str) -> list[Transition]:
+def _off_vertices(body: Boundary, name: str, slope: str) -> list[Transition]:
     found = []
     for vertex in range(body.n_vertices):
         source = Feature("vertex", vertex)
@@ -256,7 +212,7 @@ def _off_vertices(body: Body, name: str, slope: str) -> list[Transition]:
     return found
 
 
-def _end(body: Body, edge: int, end: int) -> float:
+def _end(body: Boundary, edge: int, end: int) -> float:
     """The parameter of an edge's first (0) or last (1) end."""
     offset = int(_edge_row(body, edge)[L.EDGE_REALS])
     return float(body.reals[offset + L.EDGE_T0 + end])

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from typing import BinaryIO
 
 import numpy as np
 import scipy
 
-from standoff.automaton.graph import Automaton, Transition, mode_of
+from standoff.automaton.body_panel import (
+    QUIET_COLOUR,
+    VISITED_COLOUR,
+    VISITED_FILL,
+    draw_body,
+    rows_of,
+)
+from standoff.automaton.branches import ParallelBranches
+from standoff.automaton.graph import Automaton
+from standoff.automaton.lanes import draw_lanes
+from standoff.automaton.lanes import rows_of as lanes_of
 from standoff.automaton.text import MOST_DRAWN, Names, moves, product_switches
-from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.errors import not_installed
 
@@ -18,40 +26,27 @@ try:
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.patches import FancyArrowPatch, Patch
+    from matplotlib.patches import FancyArrowPatch
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
-Place = tuple[float, float]
-
-# Okabe and Ito's blue, which eyes without red or green tell from black, on grey for the rest.
-VISITED_COLOUR = "#0072B2"
-VISITED_FILL = "#D6E9F5"
-QUIET_COLOUR = "#9A9A9A"
-
-LEVELS = {"face": 2.0, "edge": 1.0, "vertex": 0.0}
-"""Heights of the rows: a step reaches downwards, a release goes upwards."""
-
-SHAPES = {"face": "square,pad=0.35", "edge": "round,pad=0.35", "vertex": "circle,pad=0.25"}
-
-NODE_WIDTH = 0.62
-"""Inches that a feature takes in its row: room for its name and its time."""
+NODE_WIDTH, APART = 0.62, 0.95
+"""Inches that a feature takes in its row: room for its name and its time; and for an arc beside it,
+where only those that were visited are shown."""
 
 LEAST_WIDTH, MOST_WIDTH = 4.2, 40.0
 """Inches of one body's panel; a polytope of hundreds of features is scaled in the reader."""
 
-MOST_NAMED = 8
-"""Most features in a row that are named in full; more get a letter and their number."""
-
 ROW_HEIGHT = 0.3
 """Inches of a mode's row in the picture of the visits."""
 
-SWEEPS = 8
-"""Times that the rows are sorted by their neighbours' middles, which unravels most crossings."""
-
 
 def write_automaton(
-    file: BinaryIO, ending: str, automaton: Automaton, names: Names = ("A", "B"), title: str = ""
+    file: BinaryIO,
+    ending: str,
+    automaton: Automaton | ParallelBranches,
+    names: Names = ("A", "B"),
+    title: str = "",
 ) -> None:
     """Draw an automaton to a stream.
 
@@ -60,7 +55,7 @@ def write_automaton(
     file : binary stream
     ending : str
         The format: ``svg``, ``png`` or ``pdf``.
-    automaton : Automaton
+    automaton : Automaton or SolidAutomaton
     names : (str, str)
         What A and B are called.
     title : str
@@ -70,11 +65,28 @@ def write_automaton(
     OSError
         If the file cannot be written.
     """
-    sides = (("A", automaton.a, names[0]), ("B", automaton.b, names[1]))
-    rows = {letter: _rows(automaton, letter) for letter, _, _ in sides}
+    automaton_figure(automaton, names, title).savefig(file, format=ending)
+
+
+def automaton_figure(
+    automaton: Automaton | ParallelBranches, names: Names = ("A", "B"), title: str = ""
+) -> Figure:
+    """Draw an automaton: both bodies' features, and under them the modes over time, of solids a
+    lane for each branch.
+
+    Parameters
+    ----------
+    automaton : Automaton or SolidAutomaton
+    names : (str, str)
+        What A and B are called.
+    title : str
+    """
+    most = MOST_DRAWN if isinstance(automaton, ParallelBranches) and automaton.visits else None
+    rows = {letter: rows_of(automaton, letter, most) for letter in "AB"}
+    node = NODE_WIDTH if most is None else APART
     widths = [
-        min(max(LEAST_WIDTH, NODE_WIDTH * max(map(len, rows[letter].values()))), MOST_WIDTH)
-        for letter, _, _ in sides
+        min(max(LEAST_WIDTH, node * max(map(len, row.values()), default=0)), MOST_WIDTH)
+        for row in rows.values()
     ]
     below = _height_below(automaton)
     figure = Figure(figsize=(sum(widths) + 0.6, 4.0 + below), dpi=150, layout="constrained")
@@ -85,158 +97,47 @@ def write_automaton(
         width_ratios=widths,
         height_ratios=[3.2, below] if below else None,
     )
-    for letter, body, name in sides:
-        _draw_body(axes[letter], automaton, letter, body, name, rows[letter])
-    if automaton.visits:
+    for letter, name in zip("AB", names, strict=True):
+        told = _body_title(automaton, letter, name, sum(map(len, rows[letter].values())))
+        draw_body(axes[letter], automaton, letter, told, rows[letter])
+    if isinstance(automaton, ParallelBranches):
+        if automaton.visits:
+            draw_lanes(axes["pair"], automaton)
+    elif automaton.visits:
         _draw_visits(axes["pair"], automaton)
     elif below:
         _draw_product(axes["pair"], automaton)
     figure.suptitle(title or f"Modes of {names[0]} and {names[1]}")
     figure.supxlabel(
         "downwards: a step reaches the end of a feature; upwards: at rest, the slope of the "
-        "distance falls below −ε; arcs: a smooth edge is passed",
+        "distance falls below −ε; arcs: a smooth edge is passed"
+        + ("; times are summed over branches" if most is not None else ""),
         fontsize="small",
     )
     # The arrows end at the features' boxes, whose sizes are known once they were laid out.
     figure.draw_without_rendering()
-    figure.savefig(file, format=ending)
+    return figure
 
 
-def _height_below(automaton: Automaton) -> float:
+def _body_title(automaton: Automaton | ParallelBranches, letter: str, name: str, shown: int) -> str:
+    body = automaton.a if letter == "A" else automaton.b
+    every = len(automaton.features_a if letter == "A" else automaton.features_b)
+    if body is None:
+        return f"{letter} = {name}: what was visited"
+    part = f": {shown} of {every} features" if shown < every else ""
+    return f"{letter} = {name} ({body.name}){part}"
+
+
+def _height_below(automaton: Automaton | ParallelBranches) -> float:
     """Inches of the lower panel; 0 where the product is too large, or one body's own automaton."""
+    if isinstance(automaton, ParallelBranches):
+        return 1.2 + ROW_HEIGHT * lanes_of(automaton)[1] if automaton.visits else 0.0
     if automaton.visits:
         return 1.0 + ROW_HEIGHT * len(automaton.visited)
     several = min(len(automaton.features_a), len(automaton.features_b)) > 1
     if several and automaton.modes <= MOST_DRAWN:
         return 0.8 + 0.45 * len(automaton.features_b)
     return 0.0
-
-
-def _rows(automaton: Automaton, letter: str) -> dict[str, list[Feature]]:
-    """Faces, edges and vertices, each row in an order with few crossings."""
-    features = automaton.features_a if letter == "A" else automaton.features_b
-    rows = {kind: [f for f in features if f.kind == kind] for kind in LEVELS}
-    neighbours: dict[Feature, list[Feature]] = {feature: [] for feature in features}
-    for t in automaton.of(letter):
-        neighbours[t.source].append(t.target)
-        neighbours[t.target].append(t.source)
-    for sweep in range(SWEEPS):
-        for kind in ("edge", "vertex") if sweep % 2 == 0 else ("edge", "face"):
-            other = {"edge": ("face", "vertex")[sweep % 2], "vertex": "edge", "face": "edge"}[kind]
-            rank = {f: k / max(1, len(rows[other])) for k, f in enumerate(rows[other])}
-            own = {f: k / max(1, len(rows[kind])) for k, f in enumerate(rows[kind])}
-            rows[kind].sort(
-                key=lambda f: _middle([rank[g] for g in neighbours[f] if g in rank], own[f])
-            )
-    return {kind: row for kind, row in rows.items() if row}
-
-
-def _middle(ranks: Sequence[float], usual: float) -> float:
-    return sum(ranks) / len(ranks) if ranks else usual
-
-
-def _draw_body(
-    axes: Axes,
-    automaton: Automaton,
-    letter: str,
-    body: Body,
-    name: str,
-    rows: Mapping[str, Sequence[Feature]],
-) -> None:
-    places = {
-        feature: ((k + 0.5) / len(row), LEVELS[feature.kind])
-        for row in rows.values()
-        for k, feature in enumerate(row)
-    }
-    times = _times_on(automaton, letter)
-    taken = {t for _, t in automaton.taken if t.body == letter}
-    boxes = {
-        feature: _node(axes, feature, place, len(rows[feature.kind]), times.get(feature))
-        for feature, place in places.items()
-    }
-    for pair, kinds in _both_ways(automaton.of(letter)).items():
-        _arrow(axes, places, boxes, pair, kinds, taken)
-    arcs = any(t.kind == "smooth" for t in automaton.of(letter))
-    axes.set_ylim(-0.5, 3.3 if arcs else 2.5)
-    axes.set_title(f"{letter} = {name} ({body.name})", fontsize="medium")
-    axes.set_xlim(0.0, 1.0)
-    axes.set_axis_off()
-
-
-def _node(axes: Axes, feature: Feature, place: Place, crowd: int, time: float | None) -> Patch:
-    """Name a feature at its place, with the time spent on it [s]; returns the box around it."""
-    label = str(feature) if crowd <= MOST_NAMED else f"{feature.kind[0]}{feature.index}"
-    node = axes.annotate(
-        label if time is None else f"{label}\n{time:.3g} s",
-        place,
-        ha="center",
-        va="center",
-        fontsize="small",
-        zorder=3,
-        bbox={
-            "boxstyle": SHAPES[feature.kind],
-            "facecolor": "white" if time is None else VISITED_FILL,
-            "edgecolor": QUIET_COLOUR if time is None else VISITED_COLOUR,
-            "linewidth": 0.8 if time is None else 1.6,
-        },
-    )
-    box = node.get_bbox_patch()
-    assert box is not None  # asked for above
-    return box
-
-
-def _times_on(automaton: Automaton, letter: str) -> dict[Feature, float]:
-    """Time spent on each visited feature of one body [s]."""
-    times: dict[Feature, float] = {}
-    for visit in automaton.visits:
-        feature = mode_of(visit)["AB".index(letter)]
-        times[feature] = times.get(feature, 0.0) + visit.end - visit.start
-    return times
-
-
-def _both_ways(
-    transitions: Sequence[Transition],
-) -> dict[tuple[Feature, Feature], list[Transition]]:
-    """Transitions by what they join, whichever way they go."""
-    found: dict[tuple[Feature, Feature], list[Transition]] = {}
-    for t in transitions:
-        upper, lower = sorted((t.source, t.target), key=lambda f: (-LEVELS[f.kind], f.index))
-        found.setdefault((upper, lower), []).append(t)
-    return found
-
-
-def _arrow(
-    axes: Axes,
-    places: Mapping[Feature, Place],
-    boxes: Mapping[Feature, Patch],
-    pair: tuple[Feature, Feature],
-    transitions: Sequence[Transition],
-    taken: set[Transition],
-) -> None:
-    """One line between two features, with a head at each end that can be reached."""
-    upper, lower = pair
-    # The bend of an arc falls with its reach, so that long ones stay within the panel.
-    reach = abs(places[upper][0] - places[lower][0])
-    bend = -0.45 / (1.0 + 1.3 * reach) if upper.kind == lower.kind else 0.0
-    heads = {t.target for t in transitions}
-    style = f"{'<|' if upper in heads else ''}-{'|>' if lower in heads else ''}"
-    visited = any(t in taken for t in transitions)
-    axes.add_patch(
-        FancyArrowPatch(
-            places[upper],
-            places[lower],
-            arrowstyle=style,
-            connectionstyle=f"arc3,rad={bend:.4f}",
-            patchA=boxes[upper],
-            patchB=boxes[lower],
-            shrinkA=1.0,
-            shrinkB=1.0,
-            mutation_scale=8.0,
-            color=VISITED_COLOUR if visited else QUIET_COLOUR,
-            linewidth=1.8 if visited else 0.7,
-            zorder=2 if visited else 1,
-        )
-    )
 
 
 def _draw_visits(axes: Axes, automaton: Automaton) -> None:

@@ -7,8 +7,10 @@ from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from standoff.automaton.graph import Automaton, Mode, Transition, is_smooth, mode_of
-from standoff.bodies.body import Body
+from standoff.automaton.graph import Automaton, is_smooth
+from standoff.automaton.transitions import Transition
+from standoff.automaton.visits import Course, Mode, mode_of
+from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.wording import printable
 
@@ -35,30 +37,36 @@ def automaton_text(automaton: Automaton, names: Names = ("A", "B")) -> str:
     na, nb = len(automaton.features_a), len(automaton.features_b)
     modes = [f"modes: {na} features of A × {nb} of B = {automaton.modes}", LEGEND]
     bodies = [
-        _body_lines(automaton.a, "A", names[0], automaton.features_a, automaton.of("A")),
-        _body_lines(automaton.b, "B", names[1], automaton.features_b, automaton.of("B")),
+        body_lines(automaton.a, "A", names[0], automaton.features_a, automaton.of("A")),
+        body_lines(automaton.b, "B", names[1], automaton.features_b, automaton.of("B")),
     ]
     visited = _visited_lines(automaton) if automaton.visits else []
     return "\n\n".join("\n".join(lines) for lines in (modes, *bodies, visited) if lines)
 
 
-def _body_lines(
-    body: Body,
+def body_lines(
+    body: Boundary,
     letter: str,
     name: str,
     features: Sequence[Feature],
     transitions: Sequence[Transition],
 ) -> list[str]:
+    """Return what one body has, and its switches."""
+    told = f"{counts_of(body, letter, name, features)}, "
+    if not transitions:
+        return [f"{told}no switches"]
+    rows = [(f"  {t.source} → {t.target}", t.switching, t.reset) for t in transitions]
+    return [f"{told}{len(transitions)} switches", *columns(rows)]
+
+
+def counts_of(body: Boundary, letter: str, name: str, features: Sequence[Feature]) -> str:
+    """Return how many faces, edges and vertices a body has."""
     kinds = Counter(feature.kind for feature in features)
     plural = {"face": "faces", "edge": "edges", "vertex": "vertices"}
     counts = [f"{n} {kind if n == 1 else plural[kind]}" for kind, n in kinds.items()]
     smooth = sum(is_smooth(body, feature) for feature in features)
     passed = f" ({smooth} smooth: passed from face to face)" if smooth else ""
-    told = f"{letter} = {printable(name)} ({printable(body.name)}): {', '.join(counts)}{passed}, "
-    if not transitions:
-        return [f"{told}no switches"]
-    rows = [(f"  {t.source} → {t.target}", t.switching, t.reset) for t in transitions]
-    return [f"{told}{len(transitions)} switches", *columns(rows)]
+    return f"{letter} = {printable(name)} ({printable(body.name)}): {', '.join(counts)}{passed}"
 
 
 def _visited_lines(automaton: Automaton) -> list[str]:
@@ -77,17 +85,17 @@ def _visited_lines(automaton: Automaton) -> list[str]:
                 f"  {mode[0]} – {mode[1]}",
                 str(len(stays)),
                 f"{automaton.time_in(mode):.6g} s",
-                _times(visit.start for visit in stays),
+                times_told(visit.start for visit in stays),
             )
         )
     switched = [("  switch", "times", "", "taken at")]
     for transition, times in by_transition(automaton):
         told = f"  {transition.body}: {transition.source} → {transition.target}"
-        switched.append((told, str(len(times)), "", _times(times)))
+        switched.append((told, str(len(times)), "", times_told(times)))
     return [head, *columns(rows), *(columns(switched) if automaton.taken else [])]
 
 
-def by_transition(automaton: Automaton) -> list[tuple[Transition, list[float]]]:
+def by_transition(automaton: Course) -> list[tuple[Transition, list[float]]]:
     """Return the switches that were taken, each once, with all its times [s]."""
     times: dict[Transition, list[float]] = {}
     for time, transition in automaton.taken:
@@ -95,7 +103,8 @@ def by_transition(automaton: Automaton) -> list[tuple[Transition, list[float]]]:
     return list(times.items())
 
 
-def _times(times: Iterable[float], most: int = 4) -> str:
+def times_told(times: Iterable[float], most: int = 4) -> str:
+    """Return the first few of some times [s]."""
     told = [f"{time:.6g}" for time in times]
     rest = f", … {len(told) - most} more" if len(told) > most else ""
     return ", ".join(told[:most]) + rest + " s"
@@ -128,7 +137,7 @@ def automaton_mermaid(automaton: Automaton, names: Names = ("A", "B")) -> str:
         for feature in features:
             mark = "visited" if (letter, feature) in visited else feature.kind
             lines.append(f"    {_node(letter, feature)}:::{mark}")
-        lines += _arrows(letter, automaton.of(letter))
+        lines += arrows(letter, automaton.of(letter))
         lines.append("  end")
     lines += _product(automaton)
     lines += [
@@ -155,16 +164,17 @@ def _node(letter: str, feature: Feature) -> str:
     return f'{_identity(letter, feature)}{opening}"{feature}"{closing}'
 
 
-def _arrows(letter: str, transitions: Sequence[Transition]) -> list[str]:
+def arrows(letter: str, transitions: Sequence[Transition]) -> list[str]:
+    """Return one body's switches as Mermaid's arrows between its features."""
     labelled = len(transitions) <= MOST_LABELLED
-    arrows = []
+    drawn = []
     for t in transitions:
         label = f'|"{_label(t)}"|' if labelled else ""
         arrow = "-.->" if t.kind == "release" else "==>" if t.kind == "smooth" else "-->"
-        arrows.append(
+        drawn.append(
             f"    {_identity(letter, t.source)} {arrow}{label} {_identity(letter, t.target)}"
         )
-    return arrows
+    return drawn
 
 
 def _label(transition: Transition) -> str:
@@ -181,14 +191,14 @@ def _product(automaton: Automaton) -> list[str]:
         return [f"  %% the product has {automaton.modes} modes: too many to draw"]
     lines = ['  subgraph pair["the pair: A – B"]']
     lines += [
-        f'    {_mode(a, b)}["{a} – {b}"]'
+        f'    {mode_node(a, b)}["{a} – {b}"]'
         for a in automaton.features_a
         for b in automaton.features_b
     ]
     joined = dict.fromkeys(
         _undirected(source, target) for source, target in product_switches(automaton)
     )
-    lines += [f"    {_mode(*source)} <--> {_mode(*target)}" for source, target in joined]
+    lines += [f"    {mode_node(*source)} <--> {mode_node(*target)}" for source, target in joined]
     return [*lines, "  end"]
 
 
@@ -211,10 +221,10 @@ def _visited_product(automaton: Automaton) -> list[str]:
             f"{mode[0]} – {mode[1]}<br/>{automaton.time_in(mode):.4g} s in {len(stays)} "
             f"{'visit' if len(stays) == 1 else 'visits'}<br/>first at {stays[0].start:.4g} s"
         )
-        lines.append(f'    {_mode(*mode)}["{told}"]:::visited')
+        lines.append(f'    {mode_node(*mode)}["{told}"]:::visited')
     for source, target, times in moves(automaton.visits):
         many = f" and {len(times) - 1} more" if len(times) > 1 else ""
-        lines.append(f'    {_mode(*source)} -->|"{times[0]:.4g} s{many}"| {_mode(*target)}')
+        lines.append(f'    {mode_node(*source)} -->|"{times[0]:.4g} s{many}"| {mode_node(*target)}')
     return [*lines, "  end"]
 
 
@@ -228,5 +238,6 @@ def moves(visits: Sequence[Visit]) -> list[tuple[Mode, Mode, list[float]]]:
     return [(source, target, times) for (source, target), times in found.items()]
 
 
-def _mode(a: Feature, b: Feature) -> str:
-    return f"m_{a.kind}{a.index}_{b.kind}{b.index}"
+def mode_node(a: Feature, b: Feature, group: str = "m") -> str:
+    """Return the name of a mode's node."""
+    return f"{group}_{a.kind}{a.index}_{b.kind}{b.index}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from standoff.bodies.body import Body
+from standoff.bodies.boundary import Boundary
 from standoff.kernels.body import layout as L
 
 
@@ -49,7 +49,7 @@ def feature_told(text: str) -> Feature:
     return Feature(kind, int(index))
 
 
-def feature_of(body: Body, number: int) -> Feature:
+def feature_of(body: Boundary, number: int) -> Feature:
     """The feature of a packed number: faces first, then edges, then vertices; of a negative one,
     which stands for none, an empty kind and -1."""
     if number < 0:
@@ -62,7 +62,7 @@ def feature_of(body: Body, number: int) -> Feature:
     return Feature("vertex", number - body.n_edges)
 
 
-def charts_of(body: Body, face: int) -> tuple[int, int]:
+def charts_of(body: Boundary, face: int) -> tuple[int, int]:
     """(first packed chart, number of charts) of a face."""
     row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
     return int(body.ints[row]), int(body.ints[row + 1])

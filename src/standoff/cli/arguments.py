@@ -178,6 +178,9 @@ class AutomatonCommand:
     own, OUT-NAME.svg."""
     visited: Annotated[bool, arg(help_behavior_hint="")] = False
     """Track the scene first, and mark the visited modes and switches with their times."""
+    minima: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """With --visited, of a pair with a solid that need not be convex: follow all local minima below
+    this distance; that of the scene's [track] if not given."""
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from standoff.automaton.graph import Automaton
+    from standoff.automaton.parallel import SolidAutomaton
 
 Array = NDArray[np.float64]
 
@@ -110,14 +111,28 @@ class Recording(RecordedFrames):
             paths=paths,
         )
 
-    def automaton(self) -> Automaton:
+    def automaton(self) -> Automaton | SolidAutomaton:
         """Return the pair's automaton with the visited modes and the switches marked.
+
+        Returns
+        -------
+        Automaton or SolidAutomaton
+            The latter of solids: one automaton per local minimum. In a recording opened from a
+            file, which does not hold the solids, it has what was visited and taken, not what else
+            they allow.
 
         Raises
         ------
         ValueError
-            In a recording opened from a file, which does not hold the bodies, or of solids.
+            In a recording of convex bodies opened from a file, which does not hold the bodies; or
+            of solids that were tracked without ``minima=``.
         """
+        if self.info.of_solids:
+            from standoff.automaton.parallel import solid_automaton
+            from standoff.recording.branch_modes import branch_automaton
+
+            solids = None if self.pair is None else [getattr(x, "given", x) for x in self.pair]
+            return branch_automaton(self, None if solids is None else solid_automaton(*solids))
         from standoff.automaton.graph import automaton
 
         if self.pair is None:
@@ -125,11 +140,6 @@ class Recording(RecordedFrames):
                 "A recording from a file does not hold its bodies: make the pair's with "
                 "standoff.automaton.graph.automaton(a, b) and mark it with "
                 ".marked(recording.modes(), recording.events)."
-            )
-        if self.info.of_solids:
-            raise StandoffError(
-                "The automaton is that of two convex bodies, and one of these is a solid that need "
-                "not be: `modes()` has the visited modes, and `events` the switches."
             )
         return automaton(*self.pair).marked(self.modes(), self.events)
 

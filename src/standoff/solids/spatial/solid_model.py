@@ -101,6 +101,11 @@ class SolidModel(KeepsReadOnly):
         return self._given.name
 
     @property
+    def given(self) -> Boundary:
+        """What it was made of, whose faces, edges and vertices answers name: a boundary or body."""
+        return self._given
+
+    @property
     def dimension(self) -> int:
         """3."""
         return 3

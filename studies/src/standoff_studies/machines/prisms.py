@@ -1,4 +1,4 @@
-"""Planar solids as spatial ones: extruded along z, with a round hole."""
+"""Planar solids as spatial ones: extruded along z, with their holes and a round one."""
 
 from __future__ import annotations
 
@@ -40,24 +40,25 @@ class _Side(NamedTuple):
 
 
 def extruded(outline: so.PlanarSolid, low: float, high: float, bore: float = 0.0) -> Solid:
-    """What is over a planar solid's outer loop from one height to another, with a round hole about
-    the axis z unless its radius is 0."""
-    loop = outline.loops[0]
+    """What is over a planar solid from one height to another, with a round hole about the axis z
+    unless its radius is 0."""
     sides = [
         _Side(_polynomial(curve), -1 if back else 1)
+        for loop in outline.loops
         for curve, back in zip(loop.curves, loop.backward, strict=True)
     ]
+    after = _after([len(loop.curves) for loop in outline.loops])
     n = len(sides)
     flat = np.array([c.point(c.first if s > 0 else c.last) for c, s in sides])
     points = np.concatenate([flat + low * Z, flat + high * Z])
     edges: list[Edge] = []
     for level, height in enumerate((low, high)):
         for k, (curve, sense) in enumerate(sides):
-            ends = (k, (k + 1) % n)[::sense]
+            ends = (k, after[k])[::sense]
             moved = curve.transformed(np.eye(3), height * Z)
             edges.append(Edge(moved, n * level + ends[0], n * level + ends[1]))
     edges += [Edge(Line(points[k], points[n + k]), k, n + k) for k in range(n)]
-    faces = [_wall(side, k, n, low, high) for k, side in enumerate(sides)]
+    faces = [_wall(side, (k, after[k], n), low, high) for k, side in enumerate(sides)]
     for level, height in enumerate((low, high)):
         rim = tuple((n * level + k, side.sense) for k, side in enumerate(sides))
         hole = ((3 * n + level, 1),) if bore else ()
@@ -68,6 +69,15 @@ def extruded(outline: so.PlanarSolid, low: float, high: float, bore: float = 0.0
         wall = Cylinder(np.diag([bore, bore, 1.0]), np.zeros(3))
         faces.append(Face((wall,), ((3 * n, 1), (3 * n + 1, 1))))
     return Solid.from_brep(points, edges, faces, name=outline.name)
+
+
+def _after(lengths: list[int]) -> list[int]:
+    """Of each side of loops, one after the other, the next one of its loop."""
+    found: list[int] = []
+    for length in lengths:
+        first = len(found)
+        found += [first + (k + 1) % length for k in range(length)]
+    return found
 
 
 def _polynomial(curve: Curve) -> Curve:
@@ -90,10 +100,12 @@ def _flat(curve: Curve) -> Pcurve | None:
     return NurbsPcurve(curve.control_points[:, :2], curve.vector.knots, curve.weights)
 
 
-def _wall(side: _Side, k: int, n: int, low: float, high: float) -> Face:
-    """The face over a curve of the outline."""
+def _wall(side: _Side, place: tuple[int, int, int], low: float, high: float) -> Face:
+    """The face over a curve of the outline; `place` is its number, the next one's, and of how
+    many."""
     curve, sense = side
-    loop = (k, sense), (2 * n + (k + 1) % n, 1), (n + k, -sense), (2 * n + k, -1)
+    k, after, n = place
+    loop = (k, sense), (2 * n + after, 1), (n + k, -sense), (2 * n + k, -1)
     if isinstance(curve, Line):
         first = curve.point(curve.first)
         plane = Plane.through(first, curve.point(curve.last) - first, Z)

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from standoff.automaton.graph import Automaton, Transition
-from standoff.bodies import Body
+from standoff.automaton import Automaton, Transition
+from standoff.bodies import Boundary
 from standoff.bodies.tessellation import edge_lines
 from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
@@ -50,7 +50,7 @@ PROBES = 267
 def figure_17() -> Artwork:
     """Draw the automaton with what the run visited."""
     runs = SIMULATION
-    automaton = runs.paper.automaton()
+    automaton = _automaton(runs)
     return Artwork(
         caption=(
             f"Simulation D, the printed system at K = {runs.gain:g}/s from a wrong start on F0: "
@@ -70,6 +70,12 @@ def figure_17() -> Artwork:
         tables={"stays": _stays(runs), "transitions": _transitions(automaton)},
         statements=measured_by(runs.by, _statements(runs, automaton)),
     )
+
+
+def _automaton(runs: Simulation) -> Automaton:
+    found = runs.paper.automaton()
+    assert isinstance(found, Automaton)  # the lens and the point are convex
+    return found
 
 
 def _stays(runs: Simulation) -> dict[str, list[Any]]:
@@ -173,7 +179,7 @@ def _at(point: Array) -> Array:
 
 
 def _draw() -> Figure:
-    automaton = SIMULATION.paper.automaton()
+    automaton = _automaton(SIMULATION)
     places = _places(automaton.a)
     figure = style.new_figure(style.WIDTH, 7.0)
     axes = figure.add_subplot()
@@ -196,7 +202,7 @@ def _draw() -> Figure:
     return figure
 
 
-def _places(lens: Body) -> dict[Feature, Array]:
+def _places(lens: Boundary) -> dict[Feature, Array]:
     """The place of each feature: at its azimuth about z, with the upper vertex in the middle."""
     places: dict[Feature, Array] = {}
     for face, part in enumerate(lens.face_parts):
