@@ -111,7 +111,7 @@ def automaton_figure(
     figure.supxlabel(
         "downwards: a step reaches the end of a feature; upwards: at rest, the slope of the "
         "distance falls below −ε; arcs: a smooth edge is passed"
-        + ("; times are summed over branches" if most is not None else ""),
+        + (";\ntimes are summed over branches" if most is not None else ""),
         fontsize="small",
     )
     # The arrows end at the features' boxes, whose sizes are known once they were laid out.
