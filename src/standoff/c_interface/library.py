@@ -102,8 +102,8 @@ def _compiler(given: str | None) -> list[str]:
 
 
 def _run(command: list[str], work: Path) -> None:
-    """Compile the C file and link it with the kernels' object files."""
-    files = [str(SOURCE / "standoff.c"), *map(str, sorted(work.glob("*.o"))), "-lm"]
+    """Compile the C files and link it with the kernels' object files."""
+    files = [*map(str, sorted(SOURCE.glob("*.c"))), *map(str, sorted(work.glob("*.o"))), "-lm"]
     done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise StandoffError(f"{command[0]} failed:\n{done.stderr.strip()}")

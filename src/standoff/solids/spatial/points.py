@@ -11,6 +11,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids import spatial_progress as C
+from standoff.kernels.solids.spatial_tolerances import ACROSS_EDGE, ALONG_NORMAL, BESIDE_EDGE
 from standoff.kernels.solids.torus_potential import CENTRE_OF
 from standoff.solids.spatial.minimum import (
     EITHER,
@@ -24,13 +25,7 @@ from standoff.solids.spatial.minimum import (
 )
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import (
-    ACROSS_EDGE,
-    ALONG_NORMAL,
-    BESIDE_EDGE,
-    PROOF_TOLERANCE,
-    SAME_SPOT,
-)
+from standoff.solids.spatial.tolerances import PROOF_TOLERANCE, SAME_SPOT
 
 MOST_PLACES = 16
 """Nearest places that are asked for the side of a point, before a ray is."""

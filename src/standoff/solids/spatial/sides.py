@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable
+
 import numpy as np
 
 from standoff.bodies.tessellation import chart_row
@@ -13,9 +16,10 @@ from standoff.kernels.entries.queries import (
     coedge_parameters,
     edge_jet,
 )
+from standoff.kernels.solids.spatial_tolerances import NO_SIDE
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import NO_SIDE, PIECE_END_SPARE
+from standoff.solids.spatial.tolerances import PIECE_END_SPARE
 
 
 def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array | None:
@@ -34,7 +38,8 @@ def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array
     if part.dim == 0:
         number = part.feature - solid.boundary.n_faces - solid.boundary.n_edges
         if number not in solid.vertex_normals:
-            solid.vertex_normals[number] = _at_vertex(solid, number)
+            charts = range(int(solid.boundary.ints[L.N_CHARTS]))
+            solid.vertex_normals[number] = _at_vertex(solid, number, charts)
         return solid.vertex_normals[number]
     row = int(ints[L.EDGES]) + L.EDGE_STRIDE * (part.feature - solid.boundary.n_faces)
     _, tangent, *_ = leaf_jet_of(solid.packed, leaf, u, v)
@@ -48,11 +53,11 @@ def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array
     return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
-def _at_vertex(solid: SolidModel, vertex: int) -> Array | None:
-    """The sum of the faces' normals at a vertex, each weighted by the face's angle there."""
-    boundary = solid.boundary
+def _at_vertex(solid: SolidModel, vertex: int, charts: Iterable[int]) -> Array | None:
+    """The sum of the faces' normals at a vertex, each weighted by the face's angle there; all of
+    the faces that are there are among `charts`."""
     total = np.zeros(3)
-    for chart in range(int(boundary.ints[L.N_CHARTS])):
+    for chart in charts:
         out, into, normal = corner_of(solid, chart, vertex)
         if not out and not into:
             continue
@@ -104,3 +109,37 @@ def corner_of(
             u, v, *_ = coedge_parameters(ints, reals, coedge, t)
             normal = np.array(chart_normal(ints, reals, chart, u, v))
     return out, into, normal
+
+
+def charts_at(solid: SolidModel) -> dict[int, list[int]]:
+    """The charts around each vertex."""
+    boundary = solid.boundary
+    found: dict[int, list[int]] = defaultdict(list)
+    for chart in range(int(boundary.ints[L.N_CHARTS])):
+        row = chart_row(boundary, chart)
+        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+        mine: set[int] = set()
+        for coedge in range(first, first + count):
+            at = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+            edge = int(boundary.ints[at + L.COEDGE_EDGE])
+            if edge < 0:
+                mine.add(-1 - edge)
+                continue
+            part = boundary.edge_parts[edge]
+            mine.update(end for end in (part.first, part.last) if end is not None)
+        for vertex in sorted(mine):
+            found[vertex].append(chart)
+    return found
+
+
+def vertex_normals_of(solid: SolidModel) -> Array:
+    """What `outside_direction` tells at all vertices (n, 3); nan where nothing is known."""
+    charts = charts_at(solid)
+    found = np.full((solid.boundary.n_vertices, 3), np.nan)
+    for vertex in range(solid.boundary.n_vertices):
+        if vertex not in solid.vertex_normals:
+            solid.vertex_normals[vertex] = _at_vertex(solid, vertex, charts[vertex])
+        told = solid.vertex_normals[vertex]
+        if told is not None:
+            found[vertex] = told
+    return found

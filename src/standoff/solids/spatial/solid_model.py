@@ -163,6 +163,11 @@ class SolidModel(KeepsReadOnly):
         part = self.part_of(leaf)
         return self._origins[part].feature if self._origins else part
 
+    @property
+    def is_rounded(self) -> bool:
+        """Are its features and parameters told as those of the core of a body with a radius?"""
+        return bool(self._origins)
+
     def parameters_of(self, leaf: int, values: Array) -> tuple[float, ...]:
         """(u, v) of a face, (t,) of an edge, () of a vertex, from a leaf's own; of a body with a
         radius those of its core."""
