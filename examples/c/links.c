@@ -52,9 +52,8 @@ int main(void)
             continue;
         }
         if (tick % 125 == 0)
-            printf("%4d  %9.6f  %s  along (%5.2f, %5.2f, %5.2f)\n", tick, answer.distance,
-                   answer.certified ? "proven " : "overlap", answer.normal[0], answer.normal[1],
-                   answer.normal[2]);
+            printf("%4d  %9.6f  %s\n", tick, answer.distance,
+                   answer.certified ? "apart, certified" : "overlap");
     }
     free(state);
     standoff_solids_free(pair);

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 import standoff as so
+from families.solid_shapes import bolt, tube
 from standoff.c_interface import save_pair
 from standoff.solids import SolidProximity, SolidTracker
 
@@ -85,5 +86,19 @@ def matrices(flat: np.ndarray) -> np.ndarray:
 
 def carried(moved: list[np.ndarray]) -> np.ndarray:
     """Frames with A at a pose that turns slowly, B at poses in its frame."""
-    a = [so.Pose.exp((0.1 + 1e-3 * k, -0.2, 0.3), (1.0, 2.0, -0.5)).matrix for k in range(len(moved))]
+    a = [
+        so.Pose.exp((0.1 + 1e-3 * k, -0.2, 0.3), (1.0, 2.0, -0.5)).matrix for k in range(len(moved))
+    ]
     return frames_of(a, [at @ pose for at, pose in zip(a, moved, strict=True)])
+
+
+def cases(count: int) -> dict[str, tuple[so.Solid, so.Solid, list[np.ndarray]]]:
+    """Pairs for the benchmark, with B's poses in A's frame."""
+    lid, pad = so.Solid(so.shapes.box((4, 4, 1))), so.Solid(so.shapes.box((1, 1, 1)))
+    tilt, t = (0.02, 0.03, 0.0), np.linspace(0.0, 1.0, count)
+    past = [so.Pose.exp((x, 2.0 * x, 0.3), (4.0 + x, 0.5, -0.2)).matrix for x in t]
+    down = [so.Pose.exp(tilt, (0.1, 0.2, 0.99 - 0.02 * x)).matrix for x in t]
+    return {
+        "bolt and tube, apart": (bolt(), tube(1.2, 2.0, 0.0, 1.0), past),
+        "two boxes in overlap": (lid, pad, down),
+    }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from standoff.solids import SolidProximity, SolidTracker
 from standoff.tracking.status import Status
 
 Made = Callable[..., Path]
+ROOT = Path(__file__).parents[2]
+EXAMPLE, PAGE = ROOT / "examples" / "c", ROOT / "docs" / "c-interface.md"
 LID, PAD = so.Solid(so.shapes.box((4, 4, 1))), so.shapes.box((1, 1, 1))
 TILT = (0.02, 0.03, 0.0)
 
@@ -45,7 +48,9 @@ def same_apart(row: np.ndarray, answer: SolidProximity, size: float) -> None:
 def test_apart_the_distance_is_that_of_python(program: Made, tmp_path: Path) -> None:
     a, b = bolt(), tube(1.2, 2.0, 0.0, 1.0)
     tracker = so.Tracker(a, b)
-    turned = [so.Pose.exp((0.01 * k, 0.02 * k, 0.3), (4.0 + 0.02 * k, 0.5, -0.2)) for k in range(60)]
+    turned = [
+        so.Pose.exp((0.01 * k, 0.02 * k, 0.3), (4.0 + 0.02 * k, 0.5, -0.2)) for k in range(60)
+    ]
     frames = F.carried([pose.matrix for pose in turned])
     told, answers = followed(program, tracker, frames, tmp_path)
     singles = 0
@@ -208,5 +213,16 @@ def test_solids_made_of_formulas_are_refused(tmp_path: Path, rng: np.random.Gene
     assert not (tmp_path / "pair").exists()
 
 
+def test_the_links_print_what_the_page_shows(program: Made, tmp_path: Path) -> None:
+    subprocess.run([sys.executable, EXAMPLE / "save_links.py"], cwd=tmp_path, check=True)
+    made = program(EXAMPLE / "links.c")
+    told = subprocess.run([made], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert f"./links\n{told}```" in PAGE.read_text()
+    assert "-0.006001  overlap" in told
+    code = (EXAMPLE / "save_links.py").read_text().split("half = ", 1)[1]
+    assert code in PAGE.read_text()
+
+
 def test_numbers_are_those_of_python() -> None:
-    assert (B.WITHIN, B.CONTAINED) == (Status.WITHIN.value, Status.CONTAINED.value)
+    assert Status(B.WITHIN) is Status.WITHIN
+    assert Status(B.CONTAINED) is Status.CONTAINED

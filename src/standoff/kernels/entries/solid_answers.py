@@ -141,7 +141,9 @@ def bound_of_place(g, both, k):
     asked, sets = room, ahead(room, AT_SETS)
     best, minima = ahead(g.block, B.W_BEST), ahead(g.block, B.W_MINIMA)
     size = g.a.size + g.b.size
-    ask_search(best, size, norm(g.pose.p), g.asked[B.Q_FRAME + 1], asked[TOLERANCE], g.asked[B.Q_IN_TIME])
+    ask_search(
+        best, size, norm(g.pose.p), g.asked[B.Q_FRAME + 1], asked[TOLERANCE], g.asked[B.Q_IN_TIME]
+    )
     best[ABOVE], best[MOST_MINIMA] = asked[ABOVE], B.MOST_LOCAL
     o = AT_NORMALS + MINIMUM_REALS * int(sets[s + SET_ROW])
     q = (room[o + 3], room[o + 4], room[o + 5], room[o + 6])

@@ -47,7 +47,6 @@ from standoff.kernels.solids.overlap_depth import Two, depth_at
 from standoff.kernels.solids.point_depth import MOST_TIES, ask_search, which_is_inside
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
-    AT,
     BOUND,
     BUDGET,
     LEAF_A,

@@ -3,14 +3,10 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.tessellation import chart_row
 from standoff.geometry.validation import Array
-from standoff.kernels.body import layout as L
 from standoff.kernels.entries.minima import stationary
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY
