@@ -54,10 +54,11 @@ M_DISTANCE, M_LOWER, M_KEY, M_FELT, M_LEAVES, M_PARAMETERS, M_A, M_B, M_NORMAL =
 )  # fmt: skip
 M_REALS = 19
 
-# The block: poses that are given; what the frame before came to; whether its solids overlapped; from
-# where the boundaries are seen; B's pose in A's frame in it, and when they were last apart, with the
-# distance and the bound; 1 where a frame is to begin anywhere; then what Front and Frames of Python have, the answer, the local minima, the
-# contact, and at the end of what is kept the front's keys and rows.
+# The block: poses that are given; what the frame before came to; whether its solids overlapped;
+# from where the boundaries are seen; B's pose in A's frame in it, and when they were last apart,
+# with the distance and the bound; 1 where a frame is to begin anywhere; then what Front and Frames
+# of Python have, the answer, the local minima, the contact, and at the end of what is kept the
+# front's keys and rows.
 POSES, MODE, OVERLAPPED, SEEN, BEFORE, LAST = 0, 24, 25, 26, 28, 40
 LAST_LEAST, LAST_LOW = LAST + 12, LAST + 13
 FRESH = LAST + 14
@@ -93,11 +94,12 @@ N_SOLIDS_BLOCK = W_COUNTS + 16
 
 
 class Given(NamedTuple):
-    """What a frame reads: both solids as they are known, what asks of points, B's pose in A's
-    frame, what is asked, the block, and where its work is counted."""
+    """What a frame reads: both solids as they are known, directions from their vertices, what asks
+    of points, B's pose in A's frame, what is asked, the block, and where its work is counted."""
 
     a: Any
     b: Any
+    fans: Any
     probe: Any
     pose: Any
     asked: Any
@@ -134,10 +136,14 @@ def unmoved():
 
 
 @kernel
+def fans_of(table, k):
+    return Fans(tabled_ints(table, k + T_FAN_INTS), tabled_reals(table, k + T_FAN_REALS))
+
+
+@kernel
 def known_of(table, k, size):
     return Known(
         boundary_of(table, k, unmoved(), S.OUTSIDE),
-        Fans(tabled_ints(table, k + T_FAN_INTS), tabled_reals(table, k + T_FAN_REALS)),
         tabled_reals(table, k + T_NORMALS),
         tabled_reals(table, k + T_REFERENCES),
         table[2 * (k + T_REFERENCES) + 1] // 3,
@@ -174,7 +180,8 @@ def given_at(table, address):
     a = known_of(table, 0, asked[Q_SIZE_A])
     b = known_of(table, T_OF_SOLID, asked[Q_SIZE_B])
     pose = relative_pose(ahead(block, POSES), ahead(block, POSES + 12))
-    return Given(a, b, probe, pose, asked, block, counts)
+    fans = fans_of(table, 0), fans_of(table, T_OF_SOLID)
+    return Given(a, b, fans, probe, pose, asked, block, counts)
 
 
 @kernel

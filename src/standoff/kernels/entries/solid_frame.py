@@ -118,7 +118,7 @@ def go_apart(g):
         return False
     n = 0
     if best[ABOVE] > 0.0:
-        fans, sets = (g.a.fans, g.b.fans), ahead(s, B.W_SETS)
+        fans, sets = g.fans, ahead(s, B.W_SETS)
         n = T.told_minima(a, now, fans, front, travel, best, minima, (sets, 0))
     tell_apart(g, (a, now), n, inside)
     s[B.MODE], s[B.OVERLAPPED] = B.APART, 0.0
@@ -189,7 +189,7 @@ def meet(g):
     for k in range(8):
         g.counts[k] = 0
     a = B.seen_at(g.a, B.unmoved(), S.OUTSIDE)
-    both = Both(a, B.seen_at(g.b, g.pose, S.OUTSIDE), (g.a.fans, g.b.fans))
+    both = Both(a, B.seen_at(g.b, g.pose, S.OUTSIDE), g.fans)
     choices = Choices(inf, g.asked[B.Q_FRAME + 3], 1)
     n = contact_frame(both, kept, choices, room, g.counts)
     minima, sets = ahead(room, AT_NORMALS), ahead(room, AT_SETS)

@@ -50,14 +50,12 @@ class Known(NamedTuple):
     Attributes
     ----------
     side : its boundary.
-    fans : directions from its vertices.
     normals : of each vertex a vector that tells outside from inside; nan where none does.
     references, n_references : points of its boundary, 3 numbers each.
     size : length.
     """
 
     side: Any
-    fans: Any
     normals: Any
     references: Any
     n_references: Any
@@ -241,10 +239,7 @@ def inside_other(own, other, pose, forth, probe):
     unknown = 0
     for k in range(own.n_references):
         x = read_vector(own.references, 3 * k)
-        if forth:
-            spot = add(rotate(pose.R, x), pose.p)
-        else:
-            spot = rotate_back(pose.R, sub(x, pose.p))
+        spot = add(rotate(pose.R, x), pose.p) if forth else rotate_back(pose.R, sub(x, pose.p))
         told = holds_point(other, spot, probe)
         if told == 1 or told == -1:
             return told

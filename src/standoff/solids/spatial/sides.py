@@ -10,14 +10,9 @@ import numpy as np
 from standoff.bodies.tessellation import chart_row
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import (
-    chart_normal,
-    coedge_conormal,
-    coedge_parameters,
-    edge_jet,
-)
+from standoff.kernels.entries.queries import chart_normal, coedge_parameters, edge_jet
+from standoff.kernels.entries.solid_points import outward_at
 from standoff.kernels.solids.spatial_tolerances import NO_SIDE
-from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import PIECE_END_SPARE
 
@@ -31,26 +26,15 @@ def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array
     and Aanaes, 2005).
     """
     part = solid.leaves[leaf]
-    ints, reals = solid.boundary.ints, solid.boundary.reals
-    if part.dim == 2:
-        normal = np.array(chart_normal(ints, reals, part.chart, u, v))
-        return normal if normal.any() else None
-    if part.dim == 0:
-        number = part.feature - solid.boundary.n_faces - solid.boundary.n_edges
-        if number not in solid.vertex_normals:
-            charts = range(int(solid.boundary.ints[L.N_CHARTS]))
-            solid.vertex_normals[number] = _at_vertex(solid, number, charts)
-        return solid.vertex_normals[number]
-    row = int(ints[L.EDGES]) + L.EDGE_STRIDE * (part.feature - solid.boundary.n_faces)
-    _, tangent, *_ = leaf_jet_of(solid.packed, leaf, u, v)
-    size = float(np.linalg.norm(tangent))
-    if size == 0.0:
-        return None
-    along = (float(tangent[0] / size), float(tangent[1] / size), float(tangent[2] / size))
-    total = np.zeros(3)
-    for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1):
-        total += np.array(coedge_conormal(ints, reals, int(ints[row + k]), along, u)[1])
-    return total if float(np.linalg.norm(total)) > NO_SIDE else None
+    vertices = [number_of(solid, leaf)] if part.dim == 0 else []
+    normals = vertex_normals_of(solid, vertices).ravel()
+    found = np.array(outward_at(solid.packed, normals, int(leaf), float(u), float(v)))
+    return found if found.any() else None
+
+
+def number_of(solid: SolidModel, leaf: int) -> int:
+    """Of a leaf that is a vertex, among the vertices."""
+    return int(solid.leaves[leaf].feature - solid.boundary.n_faces - solid.boundary.n_edges)
 
 
 def _at_vertex(solid: SolidModel, vertex: int, charts: Iterable[int]) -> Array | None:
@@ -132,14 +116,20 @@ def charts_at(solid: SolidModel) -> dict[int, list[int]]:
     return found
 
 
-def vertex_normals_of(solid: SolidModel) -> Array:
-    """What `outside_direction` tells at all vertices (n, 3); nan where nothing is known."""
-    charts = charts_at(solid)
-    found = np.full((solid.boundary.n_vertices, 3), np.nan)
-    for vertex in range(solid.boundary.n_vertices):
-        if vertex not in solid.vertex_normals:
-            solid.vertex_normals[vertex] = _at_vertex(solid, vertex, charts[vertex])
-        told = solid.vertex_normals[vertex]
-        if told is not None:
-            found[vertex] = told
+def vertex_normals_of(solid: SolidModel, vertices: Iterable[int] | None = None) -> Array:
+    """What `outside_direction` tells at all vertices (n, 3), nan where it is not known; where some
+    of them are named, at these: what others have is not said then."""
+    if solid.vertex_normals is None:
+        solid.vertex_normals = np.full((solid.boundary.n_vertices, 3), np.inf)
+    found = solid.vertex_normals
+    missing: list[int] = np.flatnonzero(np.isinf(found[:, 0])).tolist()
+    if vertices is None:
+        around = charts_at(solid) if missing else {}
+    else:
+        missing = [vertex for vertex in vertices if np.isinf(found[vertex, 0])]
+        every = list(range(int(solid.boundary.ints[L.N_CHARTS])))
+        around = dict.fromkeys(missing, every)
+    for vertex in missing:
+        told = _at_vertex(solid, vertex, around[vertex])
+        found[vertex] = np.nan if told is None else told
     return found

@@ -72,7 +72,7 @@ class SolidModel(KeepsReadOnly):
         self._compare("area", area, relative)
         self.own, self.numbers, self.leaves, self.edges_sampled = packed_leaves(boundary)
         self.references: Array | None = None
-        self.vertex_normals: dict[int, Array | None] = {}
+        self.vertex_normals: Array | None = None
         self.vertex_fans: Any = None
 
     def _compare(self, name: str, given: float | None, relative: float) -> None:
