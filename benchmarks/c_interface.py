@@ -1,6 +1,6 @@
 """A step from C, from Python and in a compiled run: ``python -m benchmarks.c_interface``.
 
-Builds the library into a temporary folder (about a minute) and needs a C compiler. Each figure is
+Builds the library into a temporary folder (some minutes) and needs a C compiler. Each figure is
 the median of repeated runs over the same frames; the answers of C and Python are compared bit by
 bit on the way.
 """

@@ -25,7 +25,7 @@ FLAGS = ("-std=c11", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-Wall", 
 COMPILER = "CC"
 """The compiler's name in the environment; `cc` if not set."""
 
-SECONDS = 60
+SECONDS = 150
 """About how long one core takes, s."""
 
 
@@ -36,7 +36,7 @@ def build_library(
     compiler: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Path, Path]:
-    """Build the shared library of the C interface; takes about a minute.
+    """Build the shared library of the C interface; takes two to three minutes.
 
     Parameters
     ----------
