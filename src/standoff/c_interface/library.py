@@ -25,7 +25,7 @@ FLAGS = ("-std=c11", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-Wall", 
 COMPILER = "CC"
 """The compiler's name in the environment; `cc` if not set."""
 
-SECONDS = 150
+SECONDS = 130
 """About how long one core takes, s."""
 
 
