@@ -1,6 +1,6 @@
 """A step from C, from Python and in a compiled run: ``python -m benchmarks.c_interface``.
 
-Builds the library into a temporary folder (about a minute) and needs a C compiler. Each figure is
+Builds the library into a temporary folder (some minutes) and needs a C compiler. Each figure is
 the median of repeated runs over the same frames; the answers of C and Python are compared bit by
 bit on the way.
 """
@@ -20,10 +20,10 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
 import standoff as so  # noqa: E402
-from c_interface import following  # noqa: E402
+from c_interface import following, solid_following  # noqa: E402
 from standoff.c_interface import build_library  # noqa: E402
 
-COUNT, REPEATS = 2000, 7
+COUNT, COUNT_OF_SOLIDS, REPEATS = 2000, 200, 7
 
 
 def matrices(flat: np.ndarray) -> np.ndarray:
@@ -70,6 +70,26 @@ def main() -> None:
             )
             bits = "the same" if same else "OTHERS"
             print(f"| {name} | {c:.2f} | {run:.2f} | {python:.2f} | {c / run:.2f} | {bits} |")
+        solids(folder)
+
+
+def solids(folder: Path) -> None:
+    """A frame of two solids from C beside `step_into`, at the least of some runs."""
+    program = folder / "follow_solids"
+    command = ["cc", "-std=c11", "-O2", "-D_POSIX_C_SOURCE=199309L", f"-I{folder}", "-o"]
+    command += [str(program), str(solid_following.SOLID_FRAMES), f"-L{folder}", "-lstandoff", "-lm"]
+    subprocess.run([*command, "-Wl,-rpath,$ORIGIN"], check=True)
+    print("\n| solids | C, us | `step_into`, us |\n|---|---|---|")
+    for name, (a, b, poses) in solid_following.cases(COUNT_OF_SOLIDS).items():
+        tracker, frames = so.Tracker(a, b), solid_following.carried(poses)
+        in_c, in_python = [], []
+        for _ in range(REPEATS):
+            in_c.append(solid_following.in_c(program, tracker, frames, folder).seconds)
+            in_python.append(solid_following.buffer_seconds(tracker, frames))
+        c, python = (
+            1e6 * statistics.median(each) / (len(frames) - 1) for each in (in_c, in_python)
+        )
+        print(f"| {name} | {c:.1f} | {python:.1f} |")
 
 
 if __name__ == "__main__":

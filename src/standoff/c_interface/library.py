@@ -25,7 +25,7 @@ FLAGS = ("-std=c11", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-Wall", 
 COMPILER = "CC"
 """The compiler's name in the environment; `cc` if not set."""
 
-SECONDS = 60
+SECONDS = 130
 """About how long one core takes, s."""
 
 
@@ -36,7 +36,7 @@ def build_library(
     compiler: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Path, Path]:
-    """Build the shared library of the C interface; takes about a minute.
+    """Build the shared library of the C interface; takes two to three minutes.
 
     Parameters
     ----------
@@ -102,8 +102,8 @@ def _compiler(given: str | None) -> list[str]:
 
 
 def _run(command: list[str], work: Path) -> None:
-    """Compile the C file and link it with the kernels' object files."""
-    files = [str(SOURCE / "standoff.c"), *map(str, sorted(work.glob("*.o"))), "-lm"]
+    """Compile the C files and link it with the kernels' object files."""
+    files = [*map(str, sorted(SOURCE.glob("*.c"))), *map(str, sorted(work.glob("*.o"))), "-lm"]
     done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise StandoffError(f"{command[0]} failed:\n{done.stderr.strip()}")

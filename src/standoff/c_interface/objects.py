@@ -24,7 +24,7 @@ from standoff.errors import StandoffError
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
 from standoff.kernels.entries import c_interface as kernels
-from standoff.kernels.entries import laws, paper_laws
+from standoff.kernels.entries import laws, paper_laws, solid_frame
 from standoff.progress import Progress
 from standoff.whole_files import write_whole
 
@@ -34,6 +34,7 @@ RECORD_AND_STEP = types.int64, types.float64
 SYMBOLS = {
     "standoff_kernel_start": kernels.start_in_block,
     "standoff_kernel_step": kernels.step_in_block,
+    "standoff_kernel_solids": solid_frame.frame_of_solids,
 }
 
 
@@ -49,7 +50,7 @@ def smooth_symbols() -> list[str]:
 def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
     """(kernels' own symbols to those of the library, all modules of machine code), compiled now."""
     renamed: dict[str, str] = {}
-    found: dict[str, Any] = {}
+    found: dict[int, Any] = {}
     asked: list[tuple[str, Any, Any]] = [
         (symbol, kernel, TABLE_AND_BLOCK) for symbol, kernel in SYMBOLS.items()
     ]
@@ -65,7 +66,7 @@ def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
         made = kernel.overloads[signature]
         renamed[made.fndesc.llvm_func_name] = symbol
         for library in _reached(made.library):
-            found[library.name] = library
+            found[id(library)] = library  # two may bear one name
     progress(len(asked), len(asked))
     return renamed, list(found.values())
 

@@ -2,21 +2,15 @@
 
 #include "standoff.h"
 
-#include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "layout.h" /* written by standoff.c_interface.library from the kernels' own constants */
-
-#define UNUSED_RESULT (-1)
+#include "internal.h"
 
 _Static_assert(N_LONG_BLOCK <= STANDOFF_STATE_NUMBERS, "a state must hold a block");
 _Static_assert(sizeof(double) == 8 && sizeof(void *) == 8, "kernels have 64-bit numbers");
 
-/* Kernels: results and errors go through pointers, and 0 is returned where all is well. */
-typedef int32_t kernel_frame(int64_t *result, void **error, int64_t table, int64_t block);
 typedef int32_t kernel_smooth(int64_t *result, void **error, int64_t record, double step);
 
 kernel_frame standoff_kernel_start, standoff_kernel_step;
@@ -34,18 +28,15 @@ static kernel_smooth *const smooth_frames[] = {
 
 enum { INTS_A, REALS_A, INTS_B, REALS_B, OPTIONS, N_ARRAYS };
 
-/* What stands at the front of a file, behind the magic. All numbers are little-endian. */
+/* What stands at the front of a file, behind the magic. */
 typedef struct {
-    char digest[64]; /* of the kernels' sources */
-    uint64_t checksum; /* FNV-1a of all that follows it */
-    int64_t law;       /* 0: predictor-corrector, 1: the paper's */
-    int64_t smooth;    /* the frame that is tried first; 0: none */
+    file_stamp stamp;
+    int64_t law;    /* 0: predictor-corrector, 1: the paper's */
+    int64_t smooth; /* the frame that is tried first; 0: none */
     int64_t lengths[N_ARRAYS];
     double frame_time;
     double longest_step;
 } file_header;
-
-static const char magic[8] = {'S', 'T', 'A', 'N', 'D', 'O', 'F', '1'};
 
 struct standoff_pair {
     file_header header;
@@ -53,96 +44,28 @@ struct standoff_pair {
     int64_t *numbers;            /* all arrays, one behind the other */
 };
 
-static uint64_t fnv1a(const unsigned char *bytes, size_t count)
-{
-    uint64_t hash = UINT64_C(0xcbf29ce484222325);
-    for (size_t k = 0; k < count; k++)
-        hash = (hash ^ bytes[k]) * UINT64_C(0x100000001b3);
-    return hash;
-}
-
-/* The whole content of a file; NULL, and why in `code`, where it cannot be read. */
-static unsigned char *content_of(const char *path, size_t *count, int *code)
-{
-    FILE *file = fopen(path, "rb");
-    unsigned char *bytes = NULL;
-    long size = -1;
-    *code = STANDOFF_NO_FILE;
-    if (file == NULL)
-        return NULL;
-    if (fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) >= 0 && size < LONG_MAX &&
-        fseek(file, 0, SEEK_SET) == 0) {
-        bytes = malloc((size_t)size + 1);
-        if (bytes == NULL)
-            *code = STANDOFF_NO_MEMORY;
-        else if (fread(bytes, 1, (size_t)size, file) != (size_t)size) {
-            free(bytes);
-            bytes = NULL;
-        }
-    }
-    fclose(file);
-    *count = bytes == NULL ? 0 : (size_t)size;
-    return bytes;
-}
-
-/* Is the content that of a pair for this library, whole and unchanged? */
-static int checked(const unsigned char *bytes, size_t count, file_header *header)
-{
-    if (count < sizeof magic || memcmp(bytes, magic, sizeof magic) != 0)
-        return STANDOFF_NOT_A_PAIR;
-    if (count < sizeof magic + sizeof *header)
-        return STANDOFF_DAMAGED;
-    memcpy(header, bytes + sizeof magic, sizeof *header);
-    if (memcmp(header->digest, KERNELS_DIGEST, sizeof header->digest) != 0)
-        return STANDOFF_OTHER_VERSION;
-    const size_t from = sizeof magic + offsetof(file_header, law);
-    if (fnv1a(bytes + from, count - from) != header->checksum)
-        return STANDOFF_DAMAGED;
-    size_t left = (count - sizeof magic - sizeof *header) / 8;
-    for (int k = 0; k < N_ARRAYS; k++) {
-        if (header->lengths[k] < 0 || (uint64_t)header->lengths[k] > left)
-            return STANDOFF_DAMAGED;
-        left -= (size_t)header->lengths[k];
-    }
-    const int laws = header->law == 0 || header->law == 1;
-    const int64_t frames = (int64_t)(sizeof smooth_frames / sizeof *smooth_frames);
-    const int smooth = header->smooth >= 0 && header->smooth < frames;
-    const int whole = (count - sizeof magic - sizeof *header) % 8 == 0 && left == 0;
-    return laws && smooth && whole && header->lengths[OPTIONS] == N_OPTIONS ? STANDOFF_OK
-                                                                            : STANDOFF_DAMAGED;
-}
-
 int standoff_load(const char *path, standoff_pair **pair)
 {
     if (path == NULL || pair == NULL)
         return STANDOFF_NULL;
-    int code;
-    size_t count;
     file_header header;
-    unsigned char *bytes = content_of(path, &count, &code);
-    if (bytes == NULL)
+    int64_t *numbers;
+    const int code = standoff_read(path, "STANDOF1", &header.stamp, sizeof header, header.lengths,
+                                   N_ARRAYS, &numbers);
+    if (code != STANDOFF_OK)
         return code;
-    code = checked(bytes, count, &header);
-    if (code != STANDOFF_OK) {
-        free(bytes);
-        return code;
-    }
-    const size_t size = count - sizeof magic - sizeof header;
+    const int laws = header.law == 0 || header.law == 1;
+    const int64_t frames = (int64_t)(sizeof smooth_frames / sizeof *smooth_frames);
+    const int smooth = header.smooth >= 0 && header.smooth < frames;
     standoff_pair *made = malloc(sizeof *made);
-    int64_t *numbers = malloc(size > 0 ? size : 1);
-    if (made == NULL || numbers == NULL) {
-        free(made), free(numbers), free(bytes);
-        return STANDOFF_NO_MEMORY;
+    if (made == NULL || !laws || !smooth || header.lengths[OPTIONS] != N_OPTIONS) {
+        const int why = made == NULL ? STANDOFF_NO_MEMORY : STANDOFF_DAMAGED;
+        free(made), free(numbers);
+        return why;
     }
-    memcpy(numbers, bytes + sizeof magic + sizeof header, size);
-    free(bytes);
     made->header = header;
     made->numbers = numbers;
-    for (int k = 0; k < N_ARRAYS; k++) {
-        made->table[2 * k] = (int64_t)(intptr_t)numbers;
-        made->table[2 * k + 1] = header.lengths[k];
-        numbers += header.lengths[k];
-    }
+    standoff_tabulate(numbers, header.lengths, N_ARRAYS, made->table);
     /* An option is a number; an address below 2^53 is one exactly, and the kernels read it so. */
     double *options = (double *)(intptr_t)made->table[2 * OPTIONS];
     options[O_SMOOTH] = (double)(intptr_t)smooth_frames[header.smooth];
@@ -238,7 +161,7 @@ static void tell(const standoff_pair *pair, const double *out, standoff_answer *
 }
 
 /* What a kernel returned, as a code of this interface. */
-static int code_of(int32_t failed, int64_t done)
+int standoff_code_of(int32_t failed, int64_t done)
 {
     if (failed != 0)
         return STANDOFF_FAILED;
@@ -258,11 +181,6 @@ static int code_of(int32_t failed, int64_t done)
     }
 }
 
-static int64_t address(const void *pointer)
-{
-    return (int64_t)(intptr_t)pointer;
-}
-
 int standoff_start(const standoff_pair *pair, const standoff_pose *pose_a,
                    const standoff_pose *pose_b, const standoff_twist *twist_a,
                    const standoff_twist *twist_b, standoff_state *state, standoff_answer *answer)
@@ -276,9 +194,9 @@ int standoff_start(const standoff_pair *pair, const standoff_pose *pose_a,
     void *error = NULL;
     const int32_t failed =
         standoff_kernel_start(&done, &error, address(pair->table), address(made.numbers));
-    const int code = code_of(failed, done);
+    const int code = standoff_code_of(failed, done);
     if (code == STANDOFF_OK) {
-        made.pair = pair->header.checksum;
+        made.pair = pair->header.stamp.checksum;
         *state = made;
         tell(pair, made.numbers, answer);
     }
@@ -291,7 +209,7 @@ int standoff_step(const standoff_pair *pair, standoff_state *state, const stando
 {
     if (pair == NULL || pose_a == NULL || pose_b == NULL || state == NULL || answer == NULL)
         return STANDOFF_NULL;
-    if (state->pair != pair->header.checksum)
+    if (state->pair != pair->header.stamp.checksum)
         return STANDOFF_OTHER_STATE;
     if (!(step > 0.0 && step <= pair->header.longest_step && isfinite(step)))
         return STANDOFF_BAD_TIME_STEP;
@@ -300,7 +218,7 @@ int standoff_step(const standoff_pair *pair, standoff_state *state, const stando
     void *error = NULL;
     const int32_t failed =
         standoff_kernel_step(&done, &error, address(pair->table), address(state->numbers));
-    const int code = code_of(failed, done);
+    const int code = standoff_code_of(failed, done);
     if (code == STANDOFF_OK)
         tell(pair, state->numbers, answer);
     return code;
@@ -309,7 +227,7 @@ int standoff_step(const standoff_pair *pair, standoff_state *state, const stando
 int standoff_switches(const standoff_pair *pair, const standoff_state *state,
                       standoff_switch *switches, int room)
 {
-    if (pair == NULL || state == NULL || state->pair != pair->header.checksum)
+    if (pair == NULL || state == NULL || state->pair != pair->header.stamp.checksum)
         return 0;
     const double *event = state->numbers + BLOCK_EVENTS;
     const int count = (int)state->numbers[OUT_COUNTS + EVENTS];
@@ -375,9 +293,12 @@ const char *standoff_message(int code)
     case STANDOFF_OUT_OF_PLANE:
         return "a planar pair turns about z and moves in x and y: a pose leaves z = 0";
     case STANDOFF_OTHER_STATE:
-        return "the state was not started with this pair: call standoff_start first";
+        return "the state was not started with this pair: call standoff_start first, of solids "
+               "standoff_solids_start";
     case STANDOFF_NULL:
         return "a pointer is NULL: only twists may be";
+    case STANDOFF_NO_ROOM:
+        return "the state has less memory than standoff_solids_state_size tells";
     case STANDOFF_NO_FILE:
         return "the file cannot be opened or read";
     case STANDOFF_NOT_A_PAIR:

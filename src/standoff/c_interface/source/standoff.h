@@ -45,6 +45,7 @@ enum standoff_code {
     STANDOFF_OUT_OF_PLANE = -5,  /* a planar pair moves in z = 0 */
     STANDOFF_OTHER_STATE = -6,   /* the state was not started with this pair */
     STANDOFF_NULL = -7,          /* a pointer that must be given is NULL */
+    STANDOFF_NO_ROOM = -8,       /* less memory than standoff_solids_state_size tells */
     STANDOFF_NO_FILE = -10,      /* cannot be opened or read */
     STANDOFF_NOT_A_PAIR = -11,   /* not a file of save_pair */
     STANDOFF_DAMAGED = -12,      /* truncated, or changed */
@@ -63,7 +64,10 @@ enum standoff_status {
     STANDOFF_GLOBAL = 5,        /* overlap, and no direction needs less than 0.999 of it */
     STANDOFF_DEADLINE = 6,      /* the evaluations allowed for a step ran out */
     STANDOFF_NOT_RESTARTED = 7, /* restarts=False, and a search was due; the bounds hold */
-    STANDOFF_FAR = 8            /* beyond the horizon: the lower bound holds, distance is inf */
+    STANDOFF_FAR = 8,           /* beyond the horizon: the lower bound holds, distance is inf */
+    /* Of solids alone: */
+    STANDOFF_WITHIN = 10,    /* the distance is between the bounds; what is nearer is not proven */
+    STANDOFF_CONTAINED = 13  /* one is inside the other; the least wall between them is certified */
 };
 
 enum standoff_kind { STANDOFF_FACE = 0, STANDOFF_EDGE = 1, STANDOFF_VERTEX = 2 };
@@ -153,6 +157,75 @@ STANDOFF_API int standoff_step(const standoff_pair *pair, standoff_state *state,
  * were. */
 STANDOFF_API int standoff_switches(const standoff_pair *pair, const standoff_state *state,
                                    standoff_switch *switches, int room);
+
+/* Two solids that need not be convex, as saved by save_pair with a tracker of solids. */
+typedef struct standoff_solids standoff_solids;
+
+typedef struct {
+    double distance; /* signed: less than 0 where they overlap, of the deepest place that is felt */
+    double lower_bound; /* of the true distance, certified; -inf where they overlap */
+    double upper_bound; /* where they overlap no translation shorter than this parts them */
+    double point_a[3];  /* the witness points */
+    double point_b[3];
+    double normal[3];        /* unit, from A to B; 0 where the points are one */
+    double parameters_a[2];  /* (u, v) of a face, (u, 0) of an edge; nan of a body with a radius */
+    double parameters_b[2];
+    standoff_feature feature_a; /* with index -1 where no pair of points was found */
+    standoff_feature feature_b;
+    int32_t status;      /* CONVERGED, CONTAINED, OVERLAPPING, WITHIN or DEADLINE */
+    int32_t certified;   /* 1: CONVERGED or CONTAINED */
+    int32_t inside;      /* 1: A is inside B's material, 2: B inside A's, 0: neither */
+    int32_t single;      /* 1: the nearest points are the only ones; 0: not known to be */
+    int32_t minima;      /* how many standoff_solids_minima tells */
+    int32_t complete;    /* 1: these are all local minima that were asked */
+    int32_t evaluations; /* of points and bounds */
+    int32_t restarts;    /* 1: the frame began from nothing */
+    int32_t rebuilds;    /* 1: all bounds were made anew */
+} standoff_solids_answer;
+
+/* A local minimum of the signed distance. */
+typedef struct {
+    double distance;
+    double lower_bound;
+    double point_a[3];
+    double point_b[3];
+    double normal[3];
+    double parameters_a[2];
+    double parameters_b[2];
+    standoff_feature feature_a;
+    standoff_feature feature_b;
+    int64_t key;  /* the same from frame to frame; -1: none, as the pair was saved without minima= */
+    int32_t felt; /* 0: another way out of an overlap that is felt elsewhere */
+} standoff_minimum;
+
+/* As standoff_load and standoff_free. */
+STANDOFF_API int standoff_solids_load(const char *path, standoff_solids **pair);
+STANDOFF_API void standoff_solids_free(standoff_solids *pair);
+
+/* The frame time, s, that the solids were saved with; no answer depends on it. */
+STANDOFF_API double standoff_solids_frame_time(const standoff_solids *pair);
+
+/* Bytes of a state, which the caller allocates, aligned as malloc does. */
+STANDOFF_API size_t standoff_solids_state_size(const standoff_solids *pair);
+
+/* Begin anywhere, in memory of `size` bytes. Takes as long as a cold query. */
+STANDOFF_API int standoff_solids_start(const standoff_solids *pair, const standoff_pose *pose_a,
+                                       const standoff_pose *pose_b, void *state, size_t size,
+                                       standoff_solids_answer *answer);
+
+/* The answer at the poses given, from the frame before. */
+STANDOFF_API int standoff_solids_step(const standoff_solids *pair, void *state,
+                                      const standoff_pose *pose_a, const standoff_pose *pose_b,
+                                      standoff_solids_answer *answer);
+
+/* Copy what is in use of a state to other memory of the same size, to return to it; memcpy of all
+ * of it does the same. */
+STANDOFF_API int standoff_solids_copy(const standoff_solids *pair, const void *from, void *to);
+
+/* The local minima of the last frame, at most `room` of them into `minima`, the answer's own first;
+ * returns how many there are: one where the pair was saved without minima=. */
+STANDOFF_API int standoff_solids_minima(const standoff_solids *pair, const void *state,
+                                        standoff_minimum *minima, int room);
 
 /* How many features of a kind a body (0: A, 1: B) has; -1 if there is no such body or kind. */
 STANDOFF_API int standoff_features(const standoff_pair *pair, int body, int kind);

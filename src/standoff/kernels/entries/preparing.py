@@ -30,6 +30,7 @@ MODULES = (
     "standoff.kernels.entries.minima",
     "standoff.kernels.entries.tracked_solids",
     "standoff.kernels.entries.solid_contact",
+    "standoff.kernels.entries.solid_points",
 )
 """The modules that have entries."""
 
@@ -78,7 +79,13 @@ def prepare_servo() -> None:
 
 def prepare_tracked_solids() -> None:
     """Prepare what calls frames of two solids, and queries from nothing."""
-    from standoff.kernels.entries import minima, solid_contact, solids, tracked_solids
+    from standoff.kernels.entries import (
+        minima,
+        solid_contact,
+        solid_points,
+        solids,
+        tracked_solids,
+    )
 
     needed = [tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point]
     needed += [
@@ -88,7 +95,8 @@ def prepare_tracked_solids() -> None:
         minima.one_place,
     ]
     needed += [minima.span_patches, solid_contact.follow_contact, solid_contact.signed_minima]
-    needed += [solid_contact.pieces_parted]
+    needed += [solid_contact.pieces_parted, solid_points.point_depth]
+    needed += [solid_points.side_beside, solid_points.outward_at, solid_points.place_depth]
     _prepare_each(needed)
 
 

@@ -142,6 +142,38 @@ def ask(best, asked, away):
     best[N_MINIMA], best[N_OPEN], best[LOST] = 0.0, 0.0, 0.0
 
 
+@kernel
+def apart_frame(sides, low, asked, front, search, counts, out):
+    """A frame of two solids that were proven to be `low` apart, told but for its local minima; how
+    B travels in it. sides: A, B before and B now."""
+    a, last, now = sides
+    best, minima = search
+    store = front.store
+    step, radius = motion_between(last, now, best[SIZE])
+    sure = step < low
+    store[GONE] += step
+    if store[GONE] > FARTHEST_GONE * best[SIZE]:
+        begin_motion(front, FARTHEST_GONE * MOTION_SPARE * best[SIZE])
+    store[FRAME] += 1.0
+    ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
+    afar = far_side(a, now, radius)
+    turn, spare = unit_quaternion(now.pose.R), rounding_of(now, best[SIZE])
+    gone, turning, above, wider = store[GONE], 1.0 / radius, asked[2], asked[3]
+    travel = Travel(gone, ahead, radius, turning, afar, sure, now.pose, turn, spare, above, wider)
+    ask(best, asked, norm(now.pose.p))
+    for k in range(N_COUNTS):
+        counts[k] = 0
+    begin(a, now, best, minima)
+    if best[ABOVE] > 0.0:  # that pair is none of the minima now
+        best[N_MINIMA] = 0.0
+    follow(a, now, front, travel, best, minima, counts)
+    anew = frame(a, now, front, travel, best, minima, counts)
+    tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)
+    out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], counts), step
+    out[ANEW], out[SURE], out[N_SETS] = 1.0 if anew else 0.0, 1.0 if sure else 0.0, 0.0
+    return travel
+
+
 @entry(READ_ROWS, READ_ROWS, ROWS, work="solids")
 def placed_beside(poses_a, poses_b, out):
     """B's poses in A's frame (n, 12), of world poses of both: FINE, or which of a row's is none."""
@@ -190,9 +222,9 @@ def solid_frames(solids, way, senses, search, fans, front, counts, out_arrays):
     told, told_sets = out_arrays
     around = fans_at(fans[0]), fans_at(fans[1])
     n_sets = 0
-    store = front[0]
-    store[N_MERGED] = 0.0
+    front[0][N_MERGED] = 0.0
     before, poses, asked = way
+    wanted = pointer(asked, 0)
     a = side_at(solids[0], STILL, senses[0])
     last = side_at(solids[1], before, senses[1])
     low = before[13]
@@ -200,31 +232,8 @@ def solid_frames(solids, way, senses, search, fans, front, counts, out_arrays):
     best, minima, c = pointer(search[0], 0), pointer(search[1], 0), pointer(counts, 0)
     for i in range(len(poses)):
         now = side_at(solids[1], poses[i], senses[1])
-        step, radius = motion_between(last, now, best[SIZE])
-        sure = step < low
-        store[GONE] += step
-        if store[GONE] > FARTHEST_GONE * best[SIZE]:
-            begin_motion(kept, FARTHEST_GONE * MOTION_SPARE * best[SIZE])
-        store[FRAME] += 1.0
-        ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
-        afar = far_side(a, now, radius)
-        turn, spare = unit_quaternion(now.pose.R), rounding_of(now, best[SIZE])
-        gone, turning, above, wider = store[GONE], 1.0 / radius, asked[2], asked[3]
-        travel = Travel(
-            gone, ahead, radius, turning, afar, sure, now.pose, turn, spare, above, wider
-        )
-        ask(best, asked, norm(now.pose.p))
-        for k in range(N_COUNTS):
-            c[k] = 0
-        begin(a, now, best, minima)
-        if best[ABOVE] > 0.0:  # that pair is none of the minima now
-            best[N_MINIMA] = 0.0
-        follow(a, now, kept, travel, best, minima, c)
-        anew = frame(a, now, kept, travel, best, minima, c)
         out = pointer(told, TOLD_REALS * i)
-        tell(a, now, best, minima, min(low - step, best[LEAST]), kept, c, out)
-        out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], c), step
-        out[ANEW], out[SURE], out[N_SETS] = 1.0 if anew else 0.0, 1.0 if sure else 0.0, 0.0
+        travel = apart_frame((a, last, now), low, wanted, kept, (best, minima), c, out)
         if best[ABOVE] > 0.0 and out[ENDED] == SINGLE:
             at = pointer(told_sets, SET_REALS * n_sets)
             n = told_minima(a, now, around, kept, travel, best, minima, (at, i))
@@ -233,6 +242,6 @@ def solid_frames(solids, way, senses, search, fans, front, counts, out_arrays):
                 out[ENDED] = SEVERAL
         last, low = now, out[BOUND]
         full = SET_REALS * (n_sets + MOST_SETS) > len(told_sets)
-        if out[ENDED] != SINGLE or not sure or full:
+        if out[ENDED] != SINGLE or out[SURE] == 0.0 or full:
             return i + 1
     return len(poses)

@@ -1,7 +1,7 @@
 """The least distance of two solids' boundaries: best first over their trees, then each pair of
 leaves that is left is closed."""
 
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.crossing_planes import planes_apart
 from standoff.kernels.solids.over_plane import clear_of_plane
@@ -57,7 +57,7 @@ def offer(a, i, b, j, best, heap, count, counts):
     return push(keys, firsts, others, count, gap, i, j)
 
 
-@kernel
+@shared
 def search(a, b, best, minima, heap, room, counts):
     """Fill `best` and `minima`; best[OPEN] is then a proven lower bound of what was not closed.
 

@@ -100,3 +100,14 @@ NEARLY_LEVEL: Final = 1e-3
 """Relative, of the sizes and of unit tangents: an error of the contact-regular form below which the
 first steps of its Newton's method may make it so great: a rim that is tilted by 1e-8 has an error
 of 1e-8 all around, and is level in one place."""
+NO_SIDE: Final = 1e-3
+"""Length of a sum of unit normals below which it tells no side."""
+ALONG_NORMAL: Final = 1.0 - 1e-6
+"""Cosine: a point is along a face's normal, so that the face says on which side it is. At a place
+within a face it is 1. At a sharp edge one face's normal is nearly against the other's."""
+ACROSS_EDGE: Final = 1e-5
+"""Cosine to an edge's tangent up to which a point's nearest place is along the edge, not at its
+end."""
+BESIDE_EDGE: Final = 1e-2
+"""Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
+is; less is told by a ray."""

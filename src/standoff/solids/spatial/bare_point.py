@@ -22,7 +22,7 @@ class BarePoint(SolidModel):
         self.own, self.numbers = POINT[2:]
         self.leaves = [vertex_leaf(body, 0)]
         self.edges_sampled = ()
-        self.vertex_normals = {}
+        self.vertex_normals = None
         self.vertex_fans = None
         self.references = np.zeros((1, 3))
 

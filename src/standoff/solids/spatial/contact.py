@@ -15,25 +15,21 @@ from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solid_contact import pieces_parted, signed_minima
+from standoff.kernels.entries.solid_points import place_depth
 from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, SET_ROW
+from standoff.kernels.solids.overlap_depth import BALL, ENOUGH, MOST_PUSHES
 from standoff.solids.answer import Overlap
-from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, started
+from standoff.solids.asked import DEADLINE
+from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, scratch, started
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.points import depth_beside
+from standoff.solids.spatial.points import POINT, depth_beside
+from standoff.solids.spatial.sides import vertex_normals_of
 from standoff.solids.spatial.stationary import fans_of
-from standoff.solids.spatial.tolerances import LEAST_LENGTH
+from standoff.solids.spatial.tolerances import LEAST_LENGTH, PROOF_ROUNDING, PROOF_TOLERANCE
 
 MOST_REGIONS = 64
 """Minima below 0 that are looked at."""
-MOST_PUSHES = 2
-"""Places that are tried for a ball."""
-MOST_TRIED = 8
-"""Pairs of points of one minimum that are tried for a depth."""
-ENOUGH = 0.5
-"""Of what is the most that can be proven: no more is looked for."""
-BALL = 0.1
-"""Of half the depth: a larger ball is not looked for."""
 MOST_BALLS = 8
 """Balls by which two places are joined."""
 NEXT_BALL = 0.9
@@ -151,18 +147,24 @@ def felt_regions(
 
 def depth_at(pair: PlacedPair, found: SignedMinima, row: Array, enough: float) -> float:
     """As `least_depth`, by a minimum's place; where that is at the side of what overlaps, as of
-    faces that lie on each other, by a ball or by other pairs of points of the same minimum."""
-    depth = least_depth(pair, place_of(pair, found, row))
-    if depth <= enough:
-        depth = max(depth, ball_of(pair, found, row).depth)
-    for other in found.rows[found.rows[:, C.BOUND] == row[C.BOUND]][:MOST_TRIED]:
-        if depth > enough:
-            break
-        told = row.copy()
-        told[: C.BOUND] = other[: C.BOUND]
-        x, y = (other[o : o + 3] @ pair.ra.T + pair.pa for o in (C.POINTS, C.POINTS + 3))
-        depth = max(depth, least_depth(pair, Place(told, x, y, place_of(pair, found, row).normal)))
-    return depth
+    faces that lie on each other, by a ball or by other pairs of points of the same minimum. Up to
+    what is enough."""
+    solids, packed = (pair.a, pair.b), (pair.a.packed, pair.b.packed)
+    best, minima = started(Sought(0.0), pair.size, 0.0)
+    normals = tuple(vertex_normals_of(solid).ravel() for solid in solids)
+    asked = [enough, pair.a.size, pair.b.size, PROOF_ROUNDING, PROOF_TOLERANCE, DEADLINE]
+    return float(
+        place_depth(
+            packed,
+            pair.relative,
+            (POINT, *normals),
+            (found.rows, row),
+            np.array(asked),
+            (best, minima, np.zeros(C.BEST_REALS)),
+            scratch(threading.get_ident()),
+            np.zeros(8, dtype=np.int64),
+        )
+    )
 
 
 def least_depth(pair: PlacedPair, place: Place) -> float:

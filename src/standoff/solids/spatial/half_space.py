@@ -91,7 +91,7 @@ class HalfSpaceBeside(SolidModel):
         square = _square(half)
         self.boundary, self.own, self.numbers, self.leaves = square
         self.edges_sampled = ()
-        self.vertex_normals = {}
+        self.vertex_normals = None
         self.vertex_fans = None
         self.references = np.zeros((0, 3))
         self._given, self._origins = whole.boundary, {}

@@ -86,7 +86,7 @@ class Found:
 
 
 @lru_cache(maxsize=8)
-def _scratch(thread: int) -> tuple[Array, Any, Array]:
+def scratch(thread: int) -> tuple[Array, Any, Array]:
     del thread
     return np.empty(2048 + 3 * PAIRS), np.empty(2 * HEAP, dtype=np.int64), np.empty(HEAP)
 
@@ -127,7 +127,7 @@ def searched(
         np.array(senses, dtype=np.int64),
         best,
         minima,
-        _scratch(threading.get_ident()),
+        scratch(threading.get_ident()),
         counts,
     )
     return best, minima, counts

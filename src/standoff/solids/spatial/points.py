@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import NamedTuple
 
 import numpy as np
@@ -9,9 +10,11 @@ from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.kernels.entries.solid_points import point_depth, side_beside
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids import spatial_progress as C
+from standoff.kernels.solids.point_depth import MOST_PLACES
 from standoff.kernels.solids.torus_potential import CENTRE_OF
+from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.minimum import (
     EITHER,
     IDENTITY,
@@ -19,25 +22,12 @@ from standoff.solids.spatial.minimum import (
     Sought,
     leaf_jet_of,
     least_distance,
-    nearest_row,
-    searched,
+    scratch,
+    started,
 )
-from standoff.solids.spatial.sides import outside_direction
+from standoff.solids.spatial.sides import number_of, outside_direction, vertex_normals_of
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import (
-    ACROSS_EDGE,
-    ALONG_NORMAL,
-    BESIDE_EDGE,
-    PROOF_TOLERANCE,
-    SAME_SPOT,
-)
-
-MOST_PLACES = 16
-"""Nearest places that are asked for the side of a point, before a ray is."""
-
-
-LOOSE_DEPTH = 0.1
-"""Of a depth: to what it is proven where many are asked."""
+from standoff.solids.spatial.tolerances import PROOF_ROUNDING, PROOF_TOLERANCE, SAME_SPOT
 
 
 class PointDistances(NamedTuple):
@@ -94,7 +84,6 @@ def packed_point() -> tuple[NDArray[np.int64], Array, NDArray[np.int64], Array]:
 
 
 POINT = packed_point()
-EITHERS = (EITHER, EITHER)
 
 
 def distance_to_boundary(solid: SolidModel, point: Array) -> Found:
@@ -110,23 +99,19 @@ def depth_beside(solid: SolidModel, point: Array, about: float) -> tuple[float, 
 
     It is proven to a share of itself only, which takes a tenth of the time.
     """
-    pose = np.concatenate([IDENTITY[:9], -point])
-    reach = about
-    while True:
-        tolerance = LOOSE_DEPTH * reach
-        sought = Sought(tolerance, below=about + 2.0 * tolerance, on_meeting=False)
-        best, minima = searched(POINT, solid.packed, pose, EITHERS, solid.size, sought)[:2]
-        upper = float(best[C.LEAST])
-        if upper >= sought.below:  # no boundary is as near as was thought
-            return -upper, point
-        nearest = leaf_jet_of(solid.packed, int(best[C.LEAF_B]), *best[C.AT + 2 : C.AT + 4])[0]
-        lower = min(upper - tolerance, float(best[C.OPEN]))
-        if lower > 0.0:
-            rows = minima.reshape(-1, C.MINIMUM_REALS)[: int(best[C.N_MINIMA])]
-            return -lower * side_of(solid, nearest_row(best), rows, point), nearest
-        if upper >= reach or upper <= PROOF_TOLERANCE * solid.size:
-            return -upper, nearest
-        reach = upper
+    best, minima = started(Sought(0.0), solid.size, 0.0)
+    told, asked = np.empty(5), [about, solid.size, PROOF_ROUNDING, PROOF_TOLERANCE, DEADLINE]
+    point_depth(
+        solid.packed,
+        POINT,
+        vertex_normals_of(solid).ravel(),
+        np.array([*point, *asked]),
+        (best, minima, told),
+        scratch(threading.get_ident()),
+        np.zeros(8, dtype=np.int64),
+    )
+    side = float(told[0]) or _by_ray(solid, point)
+    return -side * float(told[1]), told[2:]
 
 
 def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
@@ -169,21 +154,14 @@ def side_of(solid: SolidModel, best: Array, others: Array, point: Array) -> floa
     of an edge's or a vertex's normals. At an edge's end the point may be off across it, and the
     vertex decides. A ray decides where none does.
     """
-    for row in (best, *others[:MOST_PLACES]):
-        leaf, u, v = int(row[2]), float(row[5]), float(row[6])
-        direction = outside_direction(solid, leaf, u, v)
-        if direction is None:
-            continue
-        at, tangent, *_ = leaf_jet_of(solid.packed, leaf, u, v)
-        away = point - at
-        if solid.leaves[leaf].dim == 1:
-            across = float(np.linalg.norm(away)) * float(np.linalg.norm(tangent))
-            if abs(float(away @ tangent)) > ACROSS_EDGE * across:
-                continue
-        size = float(np.linalg.norm(away)) * float(np.linalg.norm(direction))
-        along = float(direction @ away) / size if size > 0.0 else 0.0
-        if abs(along) >= (ALONG_NORMAL if solid.leaves[leaf].dim == 2 else BESIDE_EDGE):
-            return 1.0 if along > 0.0 else -1.0
+    rows = np.array([best[:7], *others[:MOST_PLACES, :7]])
+    leaves = {int(leaf) for leaf in rows[:, 2]}
+    vertices = [number_of(solid, leaf) for leaf in leaves if solid.leaves[leaf].dim == 0]
+    normals = vertex_normals_of(solid, vertices).ravel()
+    return float(side_beside(solid.packed, normals, rows, point)) or _by_ray(solid, point)
+
+
+def _by_ray(solid: SolidModel, point: Array) -> float:
     return -1.0 if solid.boundary.contains(point[None])[0] else 1.0
 
 

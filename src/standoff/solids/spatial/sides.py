@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterable
+
 import numpy as np
 
 from standoff.bodies.tessellation import chart_row
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.kernels.entries.queries import (
-    chart_normal,
-    coedge_conormal,
-    coedge_parameters,
-    edge_jet,
-)
-from standoff.solids.spatial.minimum import leaf_jet_of
+from standoff.kernels.entries.queries import chart_normal, coedge_parameters, edge_jet
+from standoff.kernels.entries.solid_points import outward_at
+from standoff.kernels.solids.spatial_tolerances import NO_SIDE
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import NO_SIDE, PIECE_END_SPARE
+from standoff.solids.spatial.tolerances import PIECE_END_SPARE
 
 
 def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array | None:
@@ -27,32 +26,22 @@ def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array
     and Aanaes, 2005).
     """
     part = solid.leaves[leaf]
-    ints, reals = solid.boundary.ints, solid.boundary.reals
-    if part.dim == 2:
-        normal = np.array(chart_normal(ints, reals, part.chart, u, v))
-        return normal if normal.any() else None
-    if part.dim == 0:
-        number = part.feature - solid.boundary.n_faces - solid.boundary.n_edges
-        if number not in solid.vertex_normals:
-            solid.vertex_normals[number] = _at_vertex(solid, number)
-        return solid.vertex_normals[number]
-    row = int(ints[L.EDGES]) + L.EDGE_STRIDE * (part.feature - solid.boundary.n_faces)
-    _, tangent, *_ = leaf_jet_of(solid.packed, leaf, u, v)
-    size = float(np.linalg.norm(tangent))
-    if size == 0.0:
-        return None
-    along = (float(tangent[0] / size), float(tangent[1] / size), float(tangent[2] / size))
-    total = np.zeros(3)
-    for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1):
-        total += np.array(coedge_conormal(ints, reals, int(ints[row + k]), along, u)[1])
-    return total if float(np.linalg.norm(total)) > NO_SIDE else None
+    vertices = [number_of(solid, leaf)] if part.dim == 0 else []
+    normals = vertex_normals_of(solid, vertices).ravel()
+    found = np.array(outward_at(solid.packed, normals, int(leaf), float(u), float(v)))
+    return found if found.any() else None
 
 
-def _at_vertex(solid: SolidModel, vertex: int) -> Array | None:
-    """The sum of the faces' normals at a vertex, each weighted by the face's angle there."""
-    boundary = solid.boundary
+def number_of(solid: SolidModel, leaf: int) -> int:
+    """Of a leaf that is a vertex, among the vertices."""
+    return int(solid.leaves[leaf].feature - solid.boundary.n_faces - solid.boundary.n_edges)
+
+
+def _at_vertex(solid: SolidModel, vertex: int, charts: Iterable[int]) -> Array | None:
+    """The sum of the faces' normals at a vertex, each weighted by the face's angle there; all of
+    the faces that are there are among `charts`."""
     total = np.zeros(3)
-    for chart in range(int(boundary.ints[L.N_CHARTS])):
+    for chart in charts:
         out, into, normal = corner_of(solid, chart, vertex)
         if not out and not into:
             continue
@@ -104,3 +93,43 @@ def corner_of(
             u, v, *_ = coedge_parameters(ints, reals, coedge, t)
             normal = np.array(chart_normal(ints, reals, chart, u, v))
     return out, into, normal
+
+
+def charts_at(solid: SolidModel) -> dict[int, list[int]]:
+    """The charts around each vertex."""
+    boundary = solid.boundary
+    found: dict[int, list[int]] = defaultdict(list)
+    for chart in range(int(boundary.ints[L.N_CHARTS])):
+        row = chart_row(boundary, chart)
+        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
+        mine: set[int] = set()
+        for coedge in range(first, first + count):
+            at = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+            edge = int(boundary.ints[at + L.COEDGE_EDGE])
+            if edge < 0:
+                mine.add(-1 - edge)
+                continue
+            part = boundary.edge_parts[edge]
+            mine.update(end for end in (part.first, part.last) if end is not None)
+        for vertex in sorted(mine):
+            found[vertex].append(chart)
+    return found
+
+
+def vertex_normals_of(solid: SolidModel, vertices: Iterable[int] | None = None) -> Array:
+    """What `outside_direction` tells at all vertices (n, 3), nan where it is not known; where some
+    of them are named, at these: what others have is not said then."""
+    if solid.vertex_normals is None:
+        solid.vertex_normals = np.full((solid.boundary.n_vertices, 3), np.inf)
+    found = solid.vertex_normals
+    missing: list[int] = np.flatnonzero(np.isinf(found[:, 0])).tolist()
+    if vertices is None:
+        around = charts_at(solid) if missing else {}
+    else:
+        missing = [vertex for vertex in vertices if np.isinf(found[vertex, 0])]
+        every = list(range(int(solid.boundary.ints[L.N_CHARTS])))
+        around = dict.fromkeys(missing, every)
+    for vertex in missing:
+        told = _at_vertex(solid, vertex, around[vertex])
+        found[vertex] = np.nan if told is None else told
+    return found

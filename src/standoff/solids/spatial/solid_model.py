@@ -72,7 +72,7 @@ class SolidModel(KeepsReadOnly):
         self._compare("area", area, relative)
         self.own, self.numbers, self.leaves, self.edges_sampled = packed_leaves(boundary)
         self.references: Array | None = None
-        self.vertex_normals: dict[int, Array | None] = {}
+        self.vertex_normals: Array | None = None
         self.vertex_fans: Any = None
 
     def _compare(self, name: str, given: float | None, relative: float) -> None:
@@ -167,6 +167,11 @@ class SolidModel(KeepsReadOnly):
         """The face, edge or vertex of a leaf; of a body with a radius that of its core."""
         part = self.part_of(leaf)
         return self._origins[part].feature if self._origins else part
+
+    @property
+    def is_rounded(self) -> bool:
+        """Are its features and parameters told as those of the core of a body with a radius?"""
+        return bool(self._origins)
 
     def parameters_of(self, leaf: int, values: Array) -> tuple[float, ...]:
         """(u, v) of a face, (t,) of an edge, () of a vertex, from a leaf's own; of a body with a

@@ -3,21 +3,17 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.tessellation import chart_row
 from standoff.geometry.validation import Array
-from standoff.kernels.body import layout as L
 from standoff.kernels.entries.minima import stationary
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY
 from standoff.kernels.solids.stationary import FAN_INTS
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.sides import corner_of
+from standoff.solids.spatial.sides import charts_at, corner_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
 
@@ -59,7 +55,7 @@ def fans_of(solid: SolidModel) -> Fans:
 
 
 def _packed(solid: SolidModel) -> Fans:
-    charts = _charts_at(solid)
+    charts = charts_at(solid)
     ints: list[int] = []
     reals: list[float] = []
     for vertex in range(solid.boundary.n_vertices):
@@ -71,27 +67,6 @@ def _packed(solid: SolidModel) -> Fans:
     assert len(found[0]) == FAN_INTS * solid.boundary.n_vertices
     for array in found:
         array.flags.writeable = False
-    return found
-
-
-def _charts_at(solid: SolidModel) -> dict[int, list[int]]:
-    """The charts around each vertex."""
-    boundary = solid.boundary
-    found: dict[int, list[int]] = defaultdict(list)
-    for chart in range(int(boundary.ints[L.N_CHARTS])):
-        row = chart_row(boundary, chart)
-        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-        mine: set[int] = set()
-        for coedge in range(first, first + count):
-            at = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-            edge = int(boundary.ints[at + L.COEDGE_EDGE])
-            if edge < 0:
-                mine.add(-1 - edge)
-                continue
-            part = boundary.edge_parts[edge]
-            mine.update(end for end in (part.first, part.last) if end is not None)
-        for vertex in sorted(mine):
-            found[vertex].append(chart)
     return found
 
 

@@ -16,8 +16,6 @@ SMOOTH_JOIN: Final = 2e-7
 """Radians: faces that join smoothly may differ by this in their normals, twice SMOOTH_ANGLE."""
 CONTINUUM_LENGTH: Final = 1e-3
 """Of the sizes: nearest pairs spread less than this are one."""
-NO_SIDE: Final = 1e-3
-"""Length of a sum of unit normals below which it tells no side."""
 LEADS_NOWHERE: Final = 1e-6
 """Length of a sum of unit gradients below which it leads nowhere."""
 COLLAPSED_FRAME: Final = 1e-6
@@ -61,15 +59,6 @@ TURN_SPARE: Final = 1e-9
 """Radians: how far past a chart's rectangle a trimming curve's image a turn away is kept."""
 BEND_SPARE: Final = 1e-12
 """Relative: for the rounding of a trimming curve's second derivative."""
-ALONG_NORMAL: Final = 1.0 - 1e-6
-"""Cosine: a point is along a face's normal, so that the face says on which side it is. At a place
-within a face it is 1. At a sharp edge one face's normal is nearly against the other's."""
-ACROSS_EDGE: Final = 1e-5
-"""Cosine to an edge's tangent up to which a point's nearest place is along the edge, not at its
-end."""
-BESIDE_EDGE: Final = 1e-2
-"""Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
-is; less is told by a ray."""
 COLLAPSED_SIDE: Final = 1e-9
 """Of the size: a side of a face's rectangle nearer to a vertex than this is collapsed to it."""
 IN_CONTACT: Final = 1e-3

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@hides("answers_of", "frames", "recorded_along", "telling_features")
+@hides("answers_of", "asks", "frames", "recorded_along", "telling_features")
 class SolidTracker(KeepsReadOnly):
     """Keeps the proven distance of two solids while they move; ``so.Tracker`` of solids makes it.
 
@@ -265,6 +265,11 @@ class SolidTracker(KeepsReadOnly):
     def frames(self, front: Front) -> Frames:
         """Frames from a front on, with what this tracker asks."""
         return self._asks.frames(front)
+
+    @property
+    def asks(self) -> Asks:
+        """What each frame is asked."""
+        return self._asks
 
     def _check(self, state: SolidState) -> None:
         if not isinstance(state, SolidState):
