@@ -21,7 +21,7 @@ from standoff.solids.spatial.tolerances import (
 )
 
 # How many of the nearest pairs are tried.
-TRIED = 4
+TRIED = 6
 MOST_CORNERS = 8
 # A surface's pieces are at least this part as wide as long; an arc's bend is less.
 WIDE = 0.3
@@ -63,7 +63,7 @@ def continuum_of(
 def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     """Places of pairs of leaves with the most parameters first; among them those of planes, then
     those within both leaves, as two may have but a corner in common, and then those of features
-    that have the most places in common."""
+    that have the most places in common. Each pair of features comes before any comes again."""
     leaves = [
         (pair.a.leaves[int(place.row[1])], pair.b.leaves[int(place.row[2])]) for place in places
     ]
@@ -73,7 +73,13 @@ def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
         (-one.dim - other.dim, -_planes(one, other), _held(place, one, other), -often[both])
         for place, (one, other), both in zip(places, leaves, features, strict=True)
     ]
-    return [places[k] for k in sorted(range(len(places)), key=lambda k: ranks[k])]
+    order = sorted(range(len(places)), key=lambda k: ranks[k])
+    seen: Counter[tuple[int, int]] = Counter()
+    turn = {}
+    for k in order:
+        turn[k] = seen[features[k]]
+        seen[features[k]] += 1
+    return [places[k] for k in sorted(order, key=lambda k: turn[k])]
 
 
 def _held(place: Place, one: Leaf, other: Leaf) -> int:
