@@ -6,19 +6,18 @@ A pair of nodes rests by what is proven of it. In a pair of leaves that may hold
 Newton's method goes on in each frame from where it came to. Where it came to none it is tried again
 in one of some frames, or where a branch ends, or a common normal leaves its leaves, that may go
 on there; where the way there is held at a side of a leaf, not before the motion may have changed
-that.
+that. Two vertices have one normal, which comes to 0 when they meet, and not before.
 """
 
 from math import inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import dot, norm, scale, sub
+from standoff.kernels.algebra.vectors import norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_ends import is_pressed, keep_end
 from standoff.kernels.solids.contact_minimum import (
-    first_normal,
     middles_of,
     moved_side,
     nearest_moved_apart,
@@ -50,7 +49,6 @@ from standoff.kernels.solids.spatial_progress import (
     N_MINIMA,
     NODE_PAIRS,
     ROUNDING,
-    SIZE,
     evaluations,
     middle,
 )
@@ -66,7 +64,7 @@ CONTACT_REALS = 8
 UNSEEN, CAME, CAME_TO_NONE, HELD = 0.0, 1.0, 2.0, 3.0
 # Times the way of a common normal out of its leaves, within which it is looked for beside them.
 PAST_LEAF = 2.0
-# Of a signed distance above 0: how far B may move, in ticks, before its common normal goes on.
+# Of the distance of two vertices: how far B may move, in ticks, before they are looked at again.
 RESTS_ABOVE = 0.5
 # Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
 MOST_RETRIED_IN = 4
@@ -163,9 +161,9 @@ def waits(front, k):
 
 
 @kernel
-def wake(both, front, x, y, reach, at_once):
+def wake(both, front, x, y, reach):
     """Look again in the pairs of leaves in which Newton's method came to no common normal, and
-    which are as near as `reach` to a pair of points: at once, or in turn."""
+    which are as near as `reach` to a pair of points."""
     rows = front.rows
     for k in range(int(front.store[N_ROWS])):
         o = CONTACT_REALS * k
@@ -174,8 +172,7 @@ def wake(both, front, x, y, reach, at_once):
             and is_near(both.a, int(rows[o + C_A]), x, reach)
             and is_near(both.b, int(rows[o + C_B]), y, reach)
         ):
-            rows[o + C_TOLD] = CAME_TO_NONE
-            rows[o + C_REST] = -inf if at_once else min(rows[o + C_REST], front.store[GONE])
+            rows[o + C_TOLD], rows[o + C_REST] = CAME_TO_NONE, -inf
 
 
 @kernel
@@ -202,7 +199,7 @@ def wake_ended(both, front, reach):
             leaves = int(r[b + B_LEAVES]), int(r[b + B_LEAVES + 1])
             x, y = read_vector(r, b + B_POINTS), read_vector(r, b + B_POINTS + 3)
             wake_alike(both, front, leaves)
-            wake(both, front, x, y, reach, True)
+            wake(both, front, x, y, reach)
 
 
 @kernel
@@ -213,15 +210,14 @@ def place_of(row, o):
 @kernel
 def wake_beside(both, front, k, q, best):
     """A common normal has left the leaves of a row, towards parameters `q` as Newton's method
-    tells: look again in those where it may be now; in turn where boundaries are apart."""
+    tells: look again in those where it may be now."""
     r, o = front.rows, CONTACT_REALS * k
     leaf_a, leaf_b = int(r[o + C_A]), int(r[o + C_B])
     ja, jb = jets_at(both.a, leaf_a, both.b, leaf_b, place_of(r, o))
     ka, kb = jets_at(both.a, leaf_a, both.b, leaf_b, q)
     went = max(norm(sub(ka[0], ja[0])), norm(sub(kb[0], jb[0])))
     reach = PAST_LEAF * went if went > 0.0 else best[ABOVE]
-    n = first_normal(both.a, leaf_a, ja, both.b, leaf_b, jb, best[SIZE])
-    wake(both, front, ja[0], jb[0], reach, dot(n, sub(jb[0], ja[0])) <= 0.0)
+    wake(both, front, ja[0], jb[0], reach)
 
 
 @kernel
@@ -262,6 +258,11 @@ def put_four(r, o, q):
 
 
 @kernel
+def is_vertex(side, leaf):
+    return side.own[leaf_ints(side, leaf) + S.DIM] == 0
+
+
+@kernel
 def look_at_leaves(both, front, k, turn, retried, best, minima, counts):
     """Keep the common normal of a pair of leaves, or let it rest. One that has left them is beside
     them. `turn`, `retried`: as of `rests_for` and `find_contacts`."""
@@ -290,8 +291,8 @@ def look_at_leaves(both, front, k, turn, retried, best, minima, counts):
     if found:
         spot = q, n, d
         keep_signed(both.a, both.b, both.fans, leaves, spot, best[ABOVE], best, minima)
-        if d > 0.0 and retried > 1:
-            r[o + C_REST] = front.store[GONE] + RESTS_ABOVE * d
+        if retried > 1 and is_vertex(both.a, leaves[0]) and is_vertex(both.b, leaves[1]):
+            r[o + C_REST] = front.store[GONE] + RESTS_ABOVE * abs(d)
 
 
 @kernel
@@ -310,7 +311,7 @@ def keep_ends(both, front, best, minima, counts):
     """Keep the ends of edges' leaves under faces, of all pairs of leaves that do not rest."""
     for k in range(int(front.store[N_ROWS])):
         o, r = CONTACT_REALS * k, front.rows
-        rests = r[o + C_REST] > front.store[GONE] and r[o + C_TOLD] not in (HELD, CAME)
+        rests = r[o + C_REST] > front.store[GONE] and r[o + C_TOLD] != HELD
         if r[o + C_A] >= 0.0 and not rests:
             keep_end(both, (int(r[o + C_A]), int(r[o + C_B])), best, minima, counts)
 
