@@ -244,11 +244,7 @@ every = 10
     assert "certified" not in told
 
 
-def test_what_takes_convex_bodies_alone_says_so(command: Command, folder: Path) -> None:
-    code, told = command(PAIR + "[track]\nstep = 0.5\nduration = 1.0\n", "automaton")
-    assert code == 2
-    assert "takes convex bodies alone" in told
-    assert "standoff distance" in told
+def test_what_takes_convex_bodies_alone_says_so(folder: Path) -> None:
     with pytest.raises(so.StandoffError, match="live page"):
         page_of(of_scene(loaded(folder, WORLD)), host="localhost", port=None)
     ring = loaded(folder, PAIR).bodies["ring"]

@@ -172,7 +172,7 @@ def test_a_deadline_leaves_open_what_holds_the_nearest_pair(deadline: int) -> No
 
 def test_what_is_open_says_what_is_proven() -> None:
     at = so.Pose(STRAIGHT, (0.9, 0.8, 1.5))
-    answer = distance(SLOT, ball(0.4), STILL, at, deadline=500)
+    answer = distance(SLOT, ball(0.4), STILL, at, deadline=100)
     assert answer.status is Status.DEADLINE
     assert answer.counts.open == len(answer.open) > 0
     assert all(each.corners_a.shape == each.corners_b.shape == (8, 3) for each in answer.open)

@@ -90,7 +90,7 @@ def negative_tolerance(a: Solid, b: Solid, pose: np.ndarray, beyond: float) -> f
     best, minima = minimum.started(minimum.Sought(-beyond, 30_000), size, 0.0)
     best[C.MEETING] = 0.0
     counts = np.zeros(8, dtype=np.int64)
-    room = minimum._scratch(0)
+    room = minimum.scratch(0)
     senses = np.array([1, 1], dtype=np.int64)
     minimum.boundary_distance((a.packed, b.packed), pose, senses, best, minima, room, counts)
     return float(min(best[C.LEAST] + beyond, best[C.OPEN]))

@@ -29,6 +29,7 @@ from standoff.kernels.solids.contact_places import (
     F_ROWS,
     F_STORE,
     MOST_PLACES,
+    MOST_ROWS,
     P_FELT,
     SPOT,
     place_at,
@@ -190,7 +191,7 @@ def meet(g):
         g.counts[k] = 0
     a = B.seen_at(g.a, B.unmoved(), S.OUTSIDE)
     both = Both(a, B.seen_at(g.b, g.pose, S.OUTSIDE), g.fans)
-    choices = Choices(inf, g.asked[B.Q_FRAME + 3], 1)
+    choices = Choices(inf, g.asked[B.Q_FRAME + 3], 1, MOST_ROWS)
     n = contact_frame(both, kept, choices, room, g.counts)
     minima, sets = ahead(room, AT_NORMALS), ahead(room, AT_SETS)
     unmark(room, minima)

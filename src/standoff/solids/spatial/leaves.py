@@ -39,8 +39,9 @@ from standoff.solids.spatial.trims import Piece, edge_ranges
 WIDEST = 0.5
 # Of that, what a part of a turn is made to take.
 NARROW = 0.95
-# Parts of the size: longest side of a leaf, of one that a trimming curve cuts, and of a plane.
-LONGEST, LONGEST_CUT, LONGEST_PLANE = 0.5, 0.12, 0.25
+# Parts of the size: longest side of a leaf, of one that a trimming curve cuts, and of a plane: few
+# hold two local minima then; longest part of an edge.
+LONGEST, LONGEST_CUT, LONGEST_PLANE, LONGEST_PART = 0.3, 0.12, 0.25, 0.5
 MOST_HALVINGS = 14
 ARC = 0.6  # radians
 UNKNOWN = np.pi
@@ -223,7 +224,7 @@ def parts_of_edge(boundary: PackedParts, number: int) -> list[tuple[float, float
     flags = edge_flags(boundary, number)
     if flags & L.SMOOTH and not flags & L.CREASED:
         return []
-    return list(edge_ranges(boundary.edge_parts[number].curve, ARC, LONGEST * boundary.size))
+    return list(edge_ranges(boundary.edge_parts[number].curve, ARC, LONGEST_PART * boundary.size))
 
 
 def edge_flags(boundary: PackedParts, number: int) -> int:
