@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from standoff.simulation.human_arm import HumanArm
     from standoff.simulation.mass_properties import MassErrors, MassProperties, mass_properties
     from standoff.simulation.operator import Operator
+    from standoff.simulation.pair_contacts import PairContact, SpotForce
     from standoff.simulation.passivity import (
         Sampling,
         largest_stiffness,
@@ -61,6 +62,7 @@ else:
                 "mass_properties",
             ),
             "standoff.simulation.operator": ("Operator",),
+            "standoff.simulation.pair_contacts": ("PairContact", "SpotForce"),
             "standoff.simulation.passivity": (
                 "Sampling",
                 "largest_stiffness",
@@ -107,6 +109,7 @@ __all__ = [
     "MassProperties",
     "Mechanism",
     "Operator",
+    "PairContact",
     "PassivityController",
     "PortEnergy",
     "RigidBody",
@@ -115,6 +118,7 @@ __all__ = [
     "SimulatedDevice",
     "SolidContact",
     "Solution",
+    "SpotForce",
     "System",
     "SystemEvent",
     "SystemRun",

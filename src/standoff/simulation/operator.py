@@ -18,7 +18,7 @@ from standoff.kernels.entries.preparing import prepare_simulation
 from standoff.kernels.state import arrays as T
 from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
-from standoff.simulation import stability
+from standoff.simulation.checked_contacts import check_contacts
 from standoff.simulation.coupled_tool import check_tool
 from standoff.simulation.device import Device, DeviceReading
 from standoff.simulation.device_loop import (
@@ -32,6 +32,7 @@ from standoff.simulation.device_loop import (
 from standoff.simulation.device_readings import DeviceReadings
 from standoff.simulation.near_pairs import near_rows
 from standoff.simulation.packed_system import driven_table, pack_system
+from standoff.simulation.pair_contacts import PairContact, Told, no_room, pair_contacts
 from standoff.simulation.pair_laws import (
     Laws,
     keeps_polytopes,
@@ -41,7 +42,7 @@ from standoff.simulation.pair_laws import (
 )
 from standoff.simulation.state_room import kept_numbers
 from standoff.simulation.system import System
-from standoff.simulation.system_run import SystemRun
+from standoff.simulation.system_run import SystemRun, account_width
 from standoff.simulation.system_start import started
 from standoff.simulation.system_state import SystemState, coupler_at, state_length
 from standoff.tracking.law_options import Law
@@ -132,9 +133,7 @@ class Operator(KeepsReadOnly):
             )
         self.laws = self._laws(gain, law)
         check_tool(system, self.dt, method)
-        for pair in range(len(system.pairs)):
-            self._check_stiffness(pair)
-            self._check_slip(pair)
+        check_contacts(system, self.dt, method)
         self._pack()
 
     def _pack(self) -> None:
@@ -171,40 +170,6 @@ class Operator(KeepsReadOnly):
             )
         return (law_inside(self.method, gain),) * len(self.system.pairs)
 
-    def _check_stiffness(self, pair: int) -> None:
-        """Refuse a contact that the step does not follow."""
-        system, contact = self.system, self.system.contacts[pair]
-        give = system.springs(pair) * system.give(pair)
-        depth = system.depth(pair)
-        slope, drag = contact.tangent(depth)
-        if stability.is_stable(self.method, give * slope, give * drag, self.dt):
-            return
-        largest = stability.largest_stable_stiffness(contact, self.method, self.dt, give, depth)
-        names = " and ".join(system.bodies[k].body.name for k in system.pairs[pair])
-        raise StandoffError(
-            f"stiffness = {contact.stiffness:g} of {names} is beyond what {self.method} follows at "
-            f"dt = {self.dt:g} down to the depth {depth:g}: the largest stable one is "
-            f"{largest:.4g}. Take a shorter step, less stiffness or damping, or give the depth "
-            "that the contact is meant for.",
-            "stiffness",
-            contact.stiffness,
-        )
-
-    def _check_slip(self, pair: int) -> None:
-        """Refuse friction that would throw a resting body to and fro."""
-        system, contact = self.system, self.system.contacts[pair]
-        least = stability.least_slip_speed(
-            contact.friction, system.weight(pair), system.give(pair), self.dt
-        )
-        if contact.friction > 0.0 and contact.slip_speed < least:
-            raise StandoffError(
-                f"slip_speed = {contact.slip_speed:g} is too small for dt = {self.dt:g}: friction "
-                "would throw a body back and forth under its own weight. Give at least "
-                f"{least:.4g}, or take a shorter step.",
-                "slip_speed",
-                contact.slip_speed,
-            )
-
     def start(self, time: float = 0.0, *, allow_overlap: bool = False) -> SystemState:
         """Return the state of the bodies' own poses and twists, with certified witness points.
 
@@ -232,6 +197,7 @@ class Operator(KeepsReadOnly):
         *,
         device: Device | DeviceReadings | None = None,
         progress: Progress | None = None,
+        contacts: bool = False,
     ) -> SystemRun:
         """Advance a state by many ticks, in compiled loops.
 
@@ -250,23 +216,24 @@ class Operator(KeepsReadOnly):
             Readings that are given run without Python. Without either, an engaged coupler lets go.
         progress : callable, optional
             Called now and then with the ticks done and the ticks in all.
+        contacts : bool
+            Keep all places and spots of each record, for `SystemRun.contacts` and for ``so.view``.
 
         Raises
         ------
         StandoffTypeError
-            Not a state; not a device.
+            Not a state; not a device; neither True nor False.
         StandoffError
             The motion left all bounds, at a tick that the message gives: a step too long for it;
             too few readings; a device without a coupler.
         """
         self._check_state(state)
         ticks, every = self._counts(ticks, every)
+        told = Told() if yes_or_no(contacts, "contacts") else None
         check_device(device, self.system.coupler is not None)
         check_count(device, ticks // self.ticks_a_reading)
         count = ticks // every + 1
-        width = entries.ACCOUNT_HEADER + K.N_TOUCH * len(self.system.pairs)
-        width += self.system.coupler is not None
-        length = state_length(self.system)
+        width, length = account_width(self.system), state_length(self.system)
         if count * (length + width) > MOST_NUMBERS:
             raise StandoffError(
                 f"{count} records of {length + width} numbers are more than {MOST_NUMBERS}: "
@@ -276,7 +243,9 @@ class Operator(KeepsReadOnly):
             )
         states, accounts = np.empty((count, length)), np.empty((count, width))
         going = Going(self.room_for(state), state.time, every)
-        size = 1 if isinstance(device, Device) else max(1, BLOCK // every)
+        size = 1 if isinstance(device, Device) or told else max(1, BLOCK // every)
+        if told:
+            self._tell(going.data, told)
         for first, last in blocks(count - 1, size):
             rows = slice(first, last + 1)
             records = (states[rows], accounts[rows])
@@ -286,12 +255,45 @@ class Operator(KeepsReadOnly):
                 a_record = every // self.ticks_a_reading
                 read = given_readings(device, first * a_record, (last - first) * a_record)
                 self._advance(going, first * every, read, records)
+            if told:
+                self._tell(going.data, told)
             if progress is not None:
                 progress(last * every, ticks)
         for array in (states, accounts):
             array.flags.writeable = False
         going.data.flags.writeable = False
-        return SystemRun(self.system, states, accounts, SystemState(self.system, going.data))
+        last = SystemState(self.system, going.data)
+        return SystemRun(self.system, states, accounts, last, told.rows if told else None)
+
+    def contacts(self, state: SystemState) -> tuple[PairContact, ...]:
+        """Return all contacts of a state: pairs that touch or nearly do, of convex bodies and
+        solids, with all their places and what each spot pushes.
+
+        Parameters
+        ----------
+        state : SystemState
+            Of this system. Of one that keeps no places, a start or a record, they are found as a
+            run that begins with it finds them.
+
+        Raises
+        ------
+        StandoffTypeError, StandoffError
+            Not a state; a state of another system.
+        """
+        self._check_state(state)
+        told, data = Told(), self.room_for(state)
+        self._tell(data, told)
+        spots, places = told.rows.spots_of(0), told.rows.places_of(0)
+        return pair_contacts(self.system, data[: state_length(self.system)], spots, places)
+
+    def _tell(self, data: Array, told: Told) -> None:
+        """Add the contacts of a state in its data, in which places may be found first."""
+        shape = state_length(self.system), account_width(self.system)
+        records = np.empty((1, shape[0])), np.empty((1, shape[1]))
+        still = np.zeros((1, 1)), np.zeros(1)
+        while not told.fits():
+            entries.run_system(self.packed, data, still, 1, records, told.room)
+        told.take(SystemState(self.system, data))
 
     def room_for(self, state: SystemState) -> Array:
         """A copy of a state's numbers, with room for what is kept beside its row."""
@@ -343,7 +345,9 @@ class Operator(KeepsReadOnly):
         # counted from the start of the run, so that blocks add no rounding
         data[K.S_TIME] = going.start + done * self.dt
         table = driven_table(self.system, float(data[K.S_TIME]), self.dt, ticks)
-        tick, why = entries.run_system(self.packed, data, (table, readings), every, records)
+        tick, why = entries.run_system(
+            self.packed, data, (table, readings), every, records, no_room()
+        )
         if why != T.FINE:
             at = done + tick + 1
             raise StandoffError(

@@ -87,21 +87,38 @@ def solid_contact(kept: Array, pose: Pose) -> SolidContact:
     StandoffError
         Nothing is kept yet.
     """
-    if not len(kept) or kept[P.F_MADE] == 0.0:
-        raise StandoffError(
-            "This state has no places of contact: a start has none before its first tick, and "
-            "records of a run keep none. Ask run.final, or a state from operator.step."
-        )
+    places = tuple(place_of(row) for row in place_rows(kept, pose))
     R, p = pose.rotation, pose.translation
-    places = []
-    for k in range(int(kept[P.F_PLACES])):
-        row = kept[P.F_AT + P.PLACE_REALS * k :]
-        n, a, b = (R @ row[o : o + 3] for o in (P.P_NORMAL, P.P_A, P.P_B))
-        told = int(row[P.P_KEY]), bool(row[P.P_FELT]), float(row[P.P_DISTANCE])
-        places.append(ContactPlace(*told, n, a + p, b + p))
     spots = []
     for k in range(int(kept[P.F_SPOTS])):
         row = kept[P.F_SPOT + P.SPOT_REALS * k :]
         point, n = R @ row[:3] + p, R @ row[P.S_NORMAL : P.S_NORMAL + 3]
         spots.append(ContactSpot(point, n, float(row[P.S_DEPTH]), float(row[P.S_SHARE])))
-    return SolidContact(tuple(places), tuple(spots), bool(kept[P.F_LOST] == 0.0))
+    return SolidContact(places, tuple(spots), bool(kept[P.F_LOST] == 0.0))
+
+
+def place_of(row: Array) -> ContactPlace:
+    """A place of its row."""
+    told = int(row[P.P_KEY]), bool(row[P.P_FELT]), float(row[P.P_DISTANCE])
+    n, a, b = (row[o : o + 3] for o in (P.P_NORMAL, P.P_A, P.P_B))
+    return ContactPlace(*told, n, a, b)
+
+
+def place_rows(kept: Array, pose: Pose) -> Array:
+    """(n, PLACE_REALS) places that are kept of a pair of solids, with A at a pose in the world.
+
+    Raises
+    ------
+    StandoffError
+        Nothing is kept yet.
+    """
+    if not len(kept) or kept[P.F_MADE] == 0.0:
+        raise StandoffError(
+            "This state has no places of contact: a start has none before its first tick, and "
+            "records of a run keep none. Ask run.final, or a state from operator.step."
+        )
+    count = int(kept[P.F_PLACES])
+    rows = kept[P.F_AT : P.F_AT + P.PLACE_REALS * count].reshape(count, P.PLACE_REALS).copy()
+    for at, shift in ((P.P_NORMAL, 0.0), (P.P_A, pose.translation), (P.P_B, pose.translation)):
+        rows[:, at : at + 3] = rows[:, at : at + 3] @ pose.rotation.T + shift
+    return rows

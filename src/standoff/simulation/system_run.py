@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.entries import simulation as E
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation import system_state as S
 from standoff.simulation.coupler_run import CouplerRun, coupler_run
+from standoff.simulation.pair_contacts import ContactRows, PairContact, pair_contacts
 from standoff.simulation.system import System
 from standoff.simulation.system_state import Energy, SystemState
 from standoff.tracking.rows import AnswerRows
@@ -32,12 +34,15 @@ class SystemRun(KeepsReadOnly):
         Energies and contacts of each, laid out in ``standoff.kernels.entries.simulation``.
     last : SystemState, optional
         The last one as the run left it, with what pairs in penetration have kept of their proofs.
+    told : ContactRows, optional
+        Spots and places of all records, of a run that was asked for its contacts.
     """
 
     system: System
     states: Array
     accounts: Array
     last: SystemState | None = None
+    told: ContactRows | None = None
 
     @property
     def times(self) -> Array:
@@ -99,6 +104,23 @@ class SystemRun(KeepsReadOnly):
         """(n, pairs) numbers of spots at which the pairs touch."""
         return self._touches()[:, :, K.T_SPOTS].astype(int)
 
+    def contacts(self, row: int) -> tuple[PairContact, ...]:
+        """Return all contacts of a record: pairs that touch or nearly do, with all their places and
+        what each spot pushes.
+
+        Raises
+        ------
+        StandoffError
+            A run that was not asked for them.
+        """
+        if self.told is None:
+            raise StandoffError(
+                "This run has kept no contacts: operator.run(..., contacts=True) keeps those of "
+                "each record."
+            )
+        spots, places = self.told.spots_of(row), self.told.places_of(row)
+        return pair_contacts(self.system, self.states[row], spots, places)
+
     @property
     def energy(self) -> Energy:
         """Energies, (n,) arrays."""
@@ -142,3 +164,9 @@ class SystemRun(KeepsReadOnly):
             f"<SystemRun of {len(self.states)} states to {self.times[-1]:g} s, deepest "
             f"{self.deepest:.3g}, {self.uncertified} uncertified>"
         )
+
+
+def account_width(system: System) -> int:
+    """How many numbers a row of accounts has."""
+    pairs = K.N_TOUCH * len(system.pairs)
+    return E.ACCOUNT_HEADER + pairs + (system.coupler is not None)

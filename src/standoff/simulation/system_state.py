@@ -16,7 +16,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.coupler_state import CouplerState, packed_state, unpacked_state
 from standoff.simulation.rigid_body import FREE
-from standoff.simulation.solid_places import SolidContact, solid_contact
+from standoff.simulation.solid_places import SolidContact, place_rows, solid_contact
 from standoff.simulation.system import System
 
 Array = NDArray[np.float64]
@@ -105,10 +105,7 @@ class SystemState(KeepsReadOnly):
                 "pair",
                 pair,
             )
-        at = state_length(self.system)
-        first, last = self.system.kept_starts()[pair : pair + 2]
-        kept = self.data[at + first : at + last]
-        return solid_contact(kept, self.pose(self.system.pairs[pair][0]))
+        return solid_contact(*_kept(self, pair))
 
     @property
     def deepest(self) -> float:
@@ -172,6 +169,18 @@ class SystemState(KeepsReadOnly):
 
     def __repr__(self) -> str:
         return f"<SystemState at {self.time:g} s>"
+
+
+def kept_places(state: SystemState, pair: int) -> Array:
+    """(n, PLACE_REALS) places that a state keeps of a pair of solids, world."""
+    return place_rows(*_kept(state, pair))
+
+
+def _kept(state: SystemState, pair: int) -> tuple[Array, Pose]:
+    """What a state keeps of a pair of solids, and where A is."""
+    at = state_length(state.system)
+    first, last = state.system.kept_starts()[pair : pair + 2]
+    return state.data[at + first : at + last], state.pose(state.system.pairs[pair][0])
 
 
 def state_length(system: System) -> int:

@@ -71,6 +71,13 @@ RATE_PAIR = 4
 # What a pair's contact comes to, for records: force on B (world), energy stored, depth, spots.
 T_FORCE, T_STORED, T_DEPTH, T_SPOTS = 0, 3, 4, 5
 N_TOUCH = 6
+# What spots push, as it is told: how many there were since an account began, for how many of them
+# there is room; then a row each: its pair, where it is, its normal, its depth, its share of a
+# spring, and its force on B; world.
+TOLD, TOLD_ROOM = 0, 1
+TOLD_HEADER = 2
+U_PAIR, U_POINT, U_NORMAL, U_DEPTH, U_SHARE, U_FORCE = 0, 1, 4, 7, 8, 9
+N_TOLD = 12
 # A body's loads: force, and torque about its centre, world.
 N_LOAD = 6
 
@@ -114,6 +121,7 @@ class Scratch(NamedTuple):
     motion: Any  # array: N_MOTION numbers
     touch: Any  # N_TOUCH numbers a pair
     spots: Any  # see ``flat_contact``
+    told: Any  # what spots push, where there is room for it
     change: Any  # N_CHANGE numbers of the pair whose frame it is
     polytope: Any  # of a pair that keeps none
     contact: Any  # what a frame of two solids fills (``solid_pairs``)

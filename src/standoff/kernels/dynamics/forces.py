@@ -13,6 +13,7 @@ from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.dynamics.arrays import (
     B_FLATS,
     N_BODY,
+    N_TOLD,
     N_TOUCH,
     P_DAMPING,
     P_FRICTION,
@@ -22,6 +23,15 @@ from standoff.kernels.dynamics.arrays import (
     T_FORCE,
     T_SPOTS,
     T_STORED,
+    TOLD,
+    TOLD_HEADER,
+    TOLD_ROOM,
+    U_DEPTH,
+    U_FORCE,
+    U_NORMAL,
+    U_PAIR,
+    U_POINT,
+    U_SHARE,
     bodies_of,
     body_ints,
     pair_numbers,
@@ -93,7 +103,22 @@ def press(system, pair, rows, first, motion, n, spot, scratch):
     touch[o + T_STORED] += done.stored
     touch[o + T_DEPTH] = max(touch[o + T_DEPTH], spot.depth)
     touch[o + T_SPOTS] += 1.0
+    tell_spot(scratch.told, pair, n, spot, done.force)
     return done.lost
+
+
+@kernel
+def tell_spot(told, pair, n, spot, force):
+    """Write what a spot pushes behind what others do, where there is room."""
+    count = told[TOLD]
+    told[TOLD] = count + 1.0
+    if count >= told[TOLD_ROOM]:
+        return
+    at = TOLD_HEADER + N_TOLD * int(count)
+    told[at + U_PAIR], told[at + U_DEPTH], told[at + U_SHARE] = pair, spot.depth, spot.share
+    put(spot.point, told, at + U_POINT)
+    put(n, told, at + U_NORMAL)
+    put(force, told, at + U_FORCE)
 
 
 @kernel

@@ -11,7 +11,13 @@ from numba import types
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, ROWS, WRITE, WRITE_INTS
 from standoff.kernels.compiler.shared_memory import load_relaxed
-from standoff.kernels.dynamics.arrays import I_READING, S_TIME, STEP, coupler_row
+from standoff.kernels.dynamics.arrays import (
+    I_READING,
+    S_TIME,
+    STEP,
+    TOLD_HEADER,
+    coupler_row,
+)
 from standoff.kernels.dynamics.coupler_arrays import (
     C_ENGAGED,
     G_FAULT,
@@ -207,7 +213,7 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
     tallies = measured[1]
     inbox, outbox = boxes
     system = system_of(packed)
-    arrays, near = scratch_for(system), near_arrays(system)
+    arrays, near = scratch_for(system, np.zeros(TOLD_HEADER)), near_arrays(system)
     scratch = pointed(arrays, near)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     events = np.zeros(MAX_EVENTS * EVENT_COLUMNS)

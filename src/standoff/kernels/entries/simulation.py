@@ -17,6 +17,8 @@ from standoff.kernels.dynamics.arrays import (
     S_TIME,
     S_UNCERTIFIED,
     STEP,
+    TOLD,
+    TOLD_HEADER,
     Scratch,
     Solids,
     System,
@@ -78,7 +80,8 @@ ACCOUNT_HEADER = 3
 
 
 @kernel
-def scratch_for(system):
+def scratch_for(system, told):
+    """What a tick writes over; `told` is what spots push."""
     rows = n_bodies(system)
     rates = n_rates(system)
     return (
@@ -93,6 +96,7 @@ def scratch_for(system):
         np.zeros(N_CHANGE),
         np.zeros(N_POLYTOPE),
         np.zeros(CONTACT_ROOM if system.layout[I_SOLIDS] > 0 else 1),
+        told,
     )
 
 
@@ -107,6 +111,7 @@ def pointed(arrays, near):
         arrays[5],
         pointer(arrays[6], 0),
         pointer(arrays[7], 0),
+        pointer(arrays[11], 0),
         pointer(arrays[8], 0),
         pointer(arrays[9], 0),
         pointer(arrays[10], 0),
@@ -120,7 +125,7 @@ def keep_alive(arrays, near, counts, log):
     """Call this after the last use of what points into the arrays: Numba frees an array after its
     own last use, and a pointer is not one."""
     total = len(counts) + len(log) + len(near[0]) + len(near[1])
-    for k in range(11):
+    for k in range(12):
         total += len(arrays[k])
     return total
 
@@ -195,8 +200,9 @@ def track_pairs(system, state, h, told, work, scratch):
 
 @kernel
 def account(system, state, row, scratch):
-    """Energies and contacts of a state, into a row of the accounts."""
+    """Energies and contacts of a state, into a row of the accounts; and what its spots push."""
     clear_loads(system, scratch)
+    scratch.told[TOLD] = 0.0
     for k in range(ACCOUNT_HEADER):
         row[k] = 0.0
     for body in range(n_bodies(system)):
@@ -251,19 +257,21 @@ RECORDS = types.Tuple((ROWS, ROWS))
 DRIVES = types.Tuple((ROWS, WRITE))
 
 
-@entry(SYSTEM, WRITE, DRIVES, INT, RECORDS, work="simulation")
-def run_system(packed, state, drives, every, records):
+@entry(SYSTEM, WRITE, DRIVES, INT, RECORDS, WRITE, work="simulation")
+def run_system(packed, state, drives, every, records, told):
     """Many ticks; the state is changed in place.
 
     `packed` is (layout, numbers, ints, reals, options, solids). `records` are the states and the
     accounts: row 0 is of the start, each next one of a tick `every` later. `drives` are a table of
     the driven bodies' motions, one row per half tick, and readings of a coupler's device, N_READING
-    numbers each (``coupler_arrays``), the first of which is for the first tick. Returns (-1, FINE),
-    or the tick after which a pose or twist was refused, and why: the rows before it are written.
+    numbers each (``coupler_arrays``), the first of which is for the first tick. `told` becomes what
+    the spots of the last record push (``dynamics.arrays``), as far as its second number has room.
+    Returns (-1, FINE), or the tick after which a pose or twist was refused, and why: the rows
+    before it are written.
     """
     states, accounts = records
     system = system_of(packed)
-    arrays, near = scratch_for(system), near_arrays(system)
+    arrays, near = scratch_for(system, told), near_arrays(system)
     scratch = pointed(arrays, near)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
@@ -309,7 +317,7 @@ def load_system(packed, state, loads, row):
     refused.
     """
     system = system_of(packed)
-    arrays, near = scratch_for(system), near_arrays(system)
+    arrays, near = scratch_for(system, np.zeros(TOLD_HEADER)), near_arrays(system)
     scratch = pointed(arrays, near)
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
