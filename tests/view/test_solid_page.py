@@ -93,9 +93,9 @@ def test_every_minimum_is_drawn_where_the_closed_form_has_it(page: Any) -> None:
     assert drawn[:, 0, :2] == pytest.approx(np.array([[0.0, 1.0], [2.0, 1.0]]), abs=1e-7)
     nodes = page.stage.picture._minima
     assert nodes._lines._nodes["nearest"].thickness > nodes._lines._nodes["others"].thickness
-    assert nodes._clouds["nearest"].point_size > nodes._clouds["others"].point_size
+    assert nodes._clouds._nodes["nearest"].point_size > nodes._clouds._nodes["others"].point_size
     for name in ("nearest", "others"):
-        assert nodes._clouds[name].points == pytest.approx(lines(page, name).reshape(-1, 3))
+        assert nodes._clouds._nodes[name].points == pytest.approx(lines(page, name).reshape(-1, 3))
     # Each normal is a shaft from A's point on, and two pairs of barbs.
     shafts = lines(page, "normals").reshape(2, 5, 2, 3)[:, 0]
     assert shafts[:, 0] == pytest.approx(drawn[:, 0], abs=1e-6)

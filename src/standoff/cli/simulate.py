@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -14,14 +14,12 @@ from standoff.cli.output import Writer, check_results, kind_of_picture, write_wh
 from standoff.cli.progress import progress_bar
 from standoff.cli.summary import line
 from standoff.cli.terminal import tell
-from standoff.errors import StandoffError
-from standoff.scene import SceneError
 from standoff.scene.simulation import SimulationScene, load_simulation
 from standoff.simulation.coupler_run import CouplerRun
 from standoff.simulation.device import Fault
 from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system_run import SystemRun
-from standoff.simulation.system_state import SystemState
+from standoff.simulation.units import Units
 from standoff.wording import counted
 
 
@@ -40,12 +38,8 @@ def run_simulate(command: SimulateCommand) -> int:
     check_results(
         command.output, "standoff.simulation.file", command.plot, "standoff.simulation.plot"
     )
-    operator = scene.operator
-    try:
-        state = operator.start(scene.start, allow_overlap=scene.allow_overlap)
-        run = _run(scene, state)
-    except StandoffError as error:
-        raise SceneError(str(error), key="simulate", file=scene.file) from error
+    with progress_bar("simulating") as progress:
+        run = scene.run(progress)
     facts = _facts(scene, run)
     files = _files(command, scene, run, facts)
     write_whole(files)
@@ -54,17 +48,6 @@ def run_simulate(command: SimulateCommand) -> int:
     else:
         tell("\n".join(_lines(scene, run, list(files))))
     return ExitCode.DONE if run.uncertified == 0 else ExitCode.NOT_CERTIFIED
-
-
-def _run(scene: SimulationScene, state: SystemState) -> SystemRun:
-    """The run, with the scene's device if there is one."""
-    with progress_bar("simulating") as progress:
-        if scene.device is None:
-            return scene.operator.run(state, scene.ticks, scene.every, progress=progress)
-        with scene.device as device:
-            return scene.operator.run(
-                state.engage(), scene.ticks, scene.every, device=device, progress=progress
-            )
 
 
 def _files(
@@ -145,24 +128,8 @@ def _body_facts(run: SystemRun, number: int) -> dict[str, Any]:
     }
 
 
-class _Units(NamedTuple):
-    """What stands after the numbers: in metres and kilograms the names that everybody knows."""
-
-    length: str
-    force: str
-    torque: str
-    energy: str
-
-    @classmethod
-    def of(cls, length: str) -> _Units:
-        if length == "m":
-            return cls("m", "N", "N m", "J")
-        force, energy = f"mass·{length}/s²", f"mass·{length}²/s²"
-        return cls(length, force, energy, energy)
-
-
 def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[str]:
-    operator, unit = scene.operator, _Units.of(scene.length_unit)
+    operator, unit = scene.operator, Units.of(scene.length_unit)
     end, records = run.times[-1] + 0.0, counted(len(run.times), "record")
     lines = [
         line("scene", scene.title),
@@ -187,7 +154,7 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
     return [*lines, *(line("wrote", str(path)) for path in written)]
 
 
-def _energy_lines(run: SystemRun, unit: _Units) -> list[str]:
+def _energy_lines(run: SystemRun, unit: Units) -> list[str]:
     energy = run.energy
     told = ", ".join(
         f"{name} {getattr(energy, name)[-1] + 0.0:.6g} {unit.energy}"
@@ -210,7 +177,7 @@ def _certified_lines(run: SystemRun) -> list[str]:
     return lines
 
 
-def _coupler_lines(facts: dict[str, Any], unit: _Units) -> list[str]:
+def _coupler_lines(facts: dict[str, Any], unit: Units) -> list[str]:
     ended = "engaged" if facts["engaged"] else f"let go: {facts['fault']}"
     force = f"greatest force {facts['greatest_force']:.6g} {unit.force}"
     torque = f"torque {facts['greatest_torque']:.6g} {unit.torque}"

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import webbrowser
+from typing import Any
 
 from standoff.cli.arguments import ViewCommand
 from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.scene import Scene, SceneError, load_scene
+from standoff.scene.file_content import is_simulation
 from standoff.view.gallery import scenes_in
 from standoff.view.minima_asked import MinimaAsked
 from standoff.view.moving_world import MovingWorld
-from standoff.view.opening import has_solids, of_scene, page_of
+from standoff.view.opening import Shown, has_solids, of_scene, page_of, simulation_of
 
 
 def run_view(command: ViewCommand) -> int:
@@ -25,6 +28,8 @@ def run_view(command: ViewCommand) -> int:
     SceneError
         If the scene is not usable.
     """
+    if is_simulation(command.scene):
+        return _serve(command, *_simulation(command))
     scene = load_scene(command.scene)
     what: Scene | MovingWorld = scene
     if command.pair is not None:
@@ -46,12 +51,30 @@ def run_view(command: ViewCommand) -> int:
             raise CommandError(f"{option}: it is for a pair with a solid that need not be convex")
     asked = MinimaAsked(command.minima, command.patch)
     others = scenes_in(command.gallery or scene.file.parent)
+    return _serve(command, what, scene.title, {"others": others, "asked": asked})
+
+
+def _simulation(command: ViewCommand) -> tuple[Shown, str, dict[str, Any]]:
+    """A simulation that has been run, and its title."""
+    for name in ("pair", "gallery", "minima", "patch"):
+        if getattr(command, name) is not None:
+            raise CommandError(
+                f"--{name}: the page of a simulation shows all its bodies and contacts, and opens "
+                "no other scenes; leave it out"
+            )
+    with progress_bar("simulating") as progress:
+        given = simulation_of(command.scene, progress)
+    return given, given.title, {}
+
+
+def _serve(command: ViewCommand, what: Shown, title: str, given: dict[str, Any]) -> int:
+    """Serve a page until it is interrupted."""
     try:
-        page = page_of(what, host=command.host, port=command.port, others=others, asked=asked)
+        page = page_of(what, host=command.host, port=command.port, **given)
     except (ModuleNotFoundError, StandoffError) as error:
         raise CommandError(str(error)) from error
     with page:
-        tell(f"{scene.title}: open {page.address}")
+        tell(f"{title}: open {page.address}")
         tell("The address holds the token of this run. Ctrl+C ends it.")
         if command.open:
             webbrowser.open(page.address)

@@ -64,6 +64,28 @@ class FileContent:
     motions: Mapping[str, Table]
 
 
+def of_a_simulation(top: Mapping[str, object]) -> str | None:
+    """Return the key that makes a file the scene of a simulation; None of another's."""
+    if any(key in top for key in ("pair", "pairs", "world")):
+        return None
+    return next((key for key in SIMULATION_KEYS if key in top), None)
+
+
+def is_simulation(file: str | os.PathLike[str]) -> bool:
+    """Is a file the scene of a simulation?
+
+    Raises
+    ------
+    SceneError
+        If the file is missing or is not TOML.
+    """
+    path = Path(file)
+    try:
+        return of_a_simulation(toml_tables(text_of(path))) is not None
+    except SceneError as error:
+        raise error.found_in(path) from error
+
+
 def read_content(
     file: str | os.PathLike[str], keys: Sequence[str], refuse_other_kind: Callable[[Table], None]
 ) -> FileContent:

@@ -13,7 +13,7 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.motion import Pose
 from standoff.scene.errors import SceneError
-from standoff.scene.file_content import PAIR_KEYS, SIMULATION_KEYS, FileContent, read_content
+from standoff.scene.file_content import PAIR_KEYS, FileContent, of_a_simulation, read_content
 from standoff.scene.frames import check_instant, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
@@ -299,12 +299,12 @@ def _track(top: Table, pairs: tuple[Pair, ...]) -> TrackSettings:
 
 def _refuse_simulation(top: Table) -> None:
     """Name the command for a file of the other kind, if that is what it is."""
-    found = [key for key in SIMULATION_KEYS if key in top]
-    if found and not any(key in top for key in ("pair", "pairs", "world")):
+    found = of_a_simulation(top)
+    if found is not None:
         raise top.error(
-            "this is the scene of a simulation: `standoff simulate` runs it, and draws it with "
-            f"--plot; the scene of a pair has no [{found[0]}]",
-            found[0],
+            "this is the scene of a simulation: `standoff simulate` runs it, and `standoff view` "
+            f"shows it; the scene of a pair has no [{found}]",
+            found,
         )
 
 

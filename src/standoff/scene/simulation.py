@@ -13,11 +13,14 @@ from typing import Any, get_args
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.errors import StandoffError
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.motion import Pose, Twist
 from standoff.motion.twist import Frame
+from standoff.progress import Progress
 from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.scene.devices import Coupled, read_coupled
+from standoff.scene.errors import SceneError
 from standoff.scene.file_content import SIMULATION_KEYS, FileContent, named, read_content
 from standoff.scene.motions import read_motion
 from standoff.scene.reader import Table
@@ -27,6 +30,7 @@ from standoff.simulation.pair_laws import BESIDE
 from standoff.simulation.rigid_body import FREE, RigidBody
 from standoff.simulation.simulated_device import SimulatedDevice
 from standoff.simulation.system import EARTH, System
+from standoff.simulation.system_run import SystemRun
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.world import Compound
 
@@ -87,6 +91,32 @@ class SimulationScene:
     def system(self) -> System:
         """The bodies, their pairs and contacts."""
         return self.operator.system
+
+    def run(self, progress: Progress | None = None, *, contacts: bool = False) -> SystemRun:
+        """Simulate, with the scene's device if there is one.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called now and then with the ticks done and the ticks in all.
+        contacts : bool
+            Keep all contacts of each record.
+
+        Raises
+        ------
+        SceneError
+            What the operator refuses: bodies that overlap, a motion that left all bounds.
+        """
+        given: dict[str, Any] = {"progress": progress, "contacts": contacts}
+        operator, count = self.operator, (self.ticks, self.every)
+        try:
+            state = operator.start(self.start, allow_overlap=self.allow_overlap)
+            if self.device is None:
+                return operator.run(state, *count, **given)
+            with self.device as device:
+                return operator.run(state.engage(), *count, device=device, **given)
+        except StandoffError as error:
+            raise SceneError(str(error), key="simulate", file=self.file) from error
 
     def pair_name(self, pair: int) -> str:
         """Return the names of a pair's bodies, with a hyphen."""

@@ -262,8 +262,8 @@ class Operator(KeepsReadOnly):
         for array in (states, accounts):
             array.flags.writeable = False
         going.data.flags.writeable = False
-        last = SystemState(self.system, going.data)
-        return SystemRun(self.system, states, accounts, last, told.rows if told else None)
+        final = SystemState(self.system, going.data)
+        return SystemRun(self.system, states, accounts, final, told.rows if told else None)
 
     def contacts(self, state: SystemState) -> tuple[PairContact, ...]:
         """Return all contacts of a state: pairs that touch or nearly do, of convex bodies and

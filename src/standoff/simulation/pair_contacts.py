@@ -85,7 +85,8 @@ class PairContact(NamedTuple):
     @property
     def force(self) -> Array:
         """Of all spots, on B, world (3,)."""
-        return np.sum([np.zeros(3), *(spot.force for spot in self.spots)], axis=0)
+        total: Array = np.sum([np.zeros(3), *(spot.force for spot in self.spots)], axis=0)
+        return total
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from standoff.view.player import SPEEDS, Player
-from standoff.view.plot import Plot
+from standoff.view.plot import DISTANCES, Curves, Plot
 
 PHONE = """<style data-of="phone">@media (max-width: 36em) {
 .mantine-Paper-root:has([data-of=phone]),
@@ -33,17 +33,23 @@ class MotionPanel:
     later : callable
         Takes what is to be done in the page's thread.
     asks : Plays
+    curves : Curves
+        What is plotted.
     """
 
     def __init__(
-        self, server: Any, later: Callable[[Callable[[], None]], None], asks: Plays
+        self,
+        server: Any,
+        later: Callable[[Callable[[], None]], None],
+        asks: Plays,
+        curves: Curves = DISTANCES,
     ) -> None:
         self._gui, self._later, self._player = server.gui, later, asks
         self._playing = False
         self._gui.configure_theme(show_logo=False, show_share_button=False)
         self._gui.add_html(PHONE)
         self._readout = self._gui.add_html("")
-        self._plot = Plot(server)
+        self._plot = Plot(server, curves)
 
     def _make_playing(self) -> None:
         gui = self._gui
@@ -76,10 +82,14 @@ class MotionPanel:
             self._time.step = (player.last - player.first) / 1000.0
             self._time.value = player.time
 
+    def playing_is(self, playing: bool) -> None:
+        """Show whether something is played, or pauses."""
+        if self._playing != playing:
+            self._playing = playing
+            self._play.label = "Pause" if playing else "Play"
+
     def plays(self, player: Player[Any]) -> None:
         """Show where a recording stands, and its frames up to there."""
-        if self._playing != player.playing:
-            self._playing = player.playing
-            self._play.label = "Pause" if player.playing else "Play"
+        self.playing_is(player.playing)
         self._time.value = round(player.time, 4)
         self._plot.plays(player)

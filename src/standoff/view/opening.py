@@ -6,15 +6,17 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Fixed, Pose
+from standoff.progress import Progress
 from standoff.recording import Recording
 from standoff.scene import Scene, load_scene
+from standoff.scene.file_content import is_simulation
 from standoff.scene.motions import Motion
 from standoff.scene.pairs import Pair
 from standoff.scene.settings import TrackSettings
@@ -26,10 +28,15 @@ from standoff.world.solid_pairs import refuse_solids
 
 if TYPE_CHECKING:
     from standoff.view.served import ServedPage
+    from standoff.view.shown_simulation import Simulated
+
+Shown: TypeAlias = "Scene | MovingWorld | Simulated"
+"""What has a page of its own kind."""
 
 GIVE = (
     "give the file of a scene, a Scene, a Recording that so.track returned, two bodies or solids "
-    "with their poses, a World with poses, or a World with paths and a duration"
+    "with their poses, a World with poses, a World with paths and a duration, a SystemRun with its "
+    "contacts, or an Operator"
 )
 
 
@@ -41,7 +48,7 @@ def view(
     minima: float | None = None,
     patch: float | None = None,
 ) -> ServedPage:
-    """Show a scene, a run, a pair of bodies or a world in the browser (docs/live-page.md).
+    """Show a scene, a run, a pair of bodies, a world or a simulation (docs/live-page.md).
 
     Parameters
     ----------
@@ -50,7 +57,9 @@ def view(
         solids and where they are, ``so.view(a, b, pose_a, pose_b)``; or a World and where its
         moving bodies are, ``so.view(world, poses)``, or how they move, ``so.view(world, paths,
         duration)`` with a mapping of names to paths and a time [s]. A scene with a ``[world]`` is
-        shown as one.
+        shown as one. Of a simulation a SystemRun that has kept its contacts, which is played, or an
+        Operator, ``so.view(operator)`` or ``so.view(operator, state)``, which is stepped; the file
+        of a simulation is run first.
     host : str
         Name or address to serve the page at; only this machine, if not given.
     port : int, optional
@@ -89,18 +98,18 @@ def view(
 
 
 def page_of(
-    what: Scene | MovingWorld,
+    what: Shown,
     *,
     host: str,
     port: int | None,
     others: Mapping[str, Path] | None = None,
     asked: MinimaAsked | None = None,
 ) -> ServedPage:
-    """Return the page of a scene's pair or of a world, served.
+    """Return the page of a scene's pair, of a world or of a simulation, served.
 
     Parameters
     ----------
-    what : Scene or MovingWorld
+    what : Scene, MovingWorld or Simulated
     host, port
         As of `view`.
     others : mapping of str to Path, optional
@@ -128,6 +137,10 @@ def page_of(
         from standoff.view.page import Page
 
         return Page(what, host=host, port=port, others=others)
+    if not isinstance(what, MovingWorld):
+        from standoff.view.simulation_page import SimulationPage
+
+        return SimulationPage(what, host=host, port=port)
     refuse_solids(
         what.world.bodies,
         "The live page",
@@ -150,12 +163,34 @@ def of_scene(scene: Scene) -> Scene | MovingWorld:
     return world_of_scene(scene)
 
 
-def _shown(what: tuple[Any, ...]) -> Scene | MovingWorld:
+def simulation_of(file: str | os.PathLike[str], progress: Progress | None = None) -> Simulated:
+    """Run the scene of a simulation, and return it with all its contacts.
+
+    Parameters
+    ----------
+    file : str or path
+    progress : callable, optional
+        As of ``Operator.run``.
+
+    Raises
+    ------
+    SceneError
+        If the scene is not usable, or the motion left all bounds.
+    """
+    from standoff.scene.simulation import load_simulation
+    from standoff.view.shown_simulation import Simulated
+
+    scene = load_simulation(file)
+    run = scene.run(progress, contacts=True)
+    return Simulated(run, scene.title, scene.length_unit, scene.names)
+
+
+def _shown(what: tuple[Any, ...]) -> Shown:
     match what:
         case (Scene() as scene,):
             return of_scene(scene)
         case (str() | os.PathLike() as file,):
-            return of_scene(load_scene(file))
+            return simulation_of(file) if is_simulation(file) else of_scene(load_scene(file))
         case (Recording() as recording,):
             return scene_of(recording)
         case (World() as world, poses):
@@ -165,7 +200,25 @@ def _shown(what: tuple[Any, ...]) -> Scene | MovingWorld:
         case (a, b, pose_a, pose_b) if (pair := _pair(a, b)) is not None:
             paths = Fixed(Pose.of(pose_a)), Fixed(Pose.of(pose_b))
             return _made(pair, paths, "Two bodies", "", TrackSettings())
+    found = _simulation(what)
+    if found is not None:
+        return found
     raise StandoffTypeError(f"{shown(what)} cannot be shown: {GIVE}.", "what", what)
+
+
+def _simulation(what: tuple[Any, ...]) -> Simulated | None:
+    """A run, or an operator with a state or at its start; None of anything else."""
+    from standoff.simulation import Operator, SystemRun, SystemState
+    from standoff.view.shown_simulation import simulated
+
+    match what:
+        case (SystemRun() as run,):
+            return simulated(run)
+        case (Operator() as operator,):
+            return simulated((operator, operator.start()))
+        case (Operator() as operator, SystemState() as state):
+            return simulated((operator, state))
+    return None
 
 
 def _pair(a: Any, b: Any) -> tuple[Shape, Shape] | None:

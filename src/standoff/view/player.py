@@ -14,19 +14,11 @@ SPEEDS = {"×0.1": 0.1, "×0.25": 0.25, "×0.5": 0.5, "×1": 1.0, "×2": 2.0, "�
 
 
 class Recorded(Protocol):
-    """Frames that can be played: a recording of a pair, or the course of a world."""
+    """Frames that can be played: a recording of a pair, the course of a world, or a simulation."""
 
     @property
     def time(self) -> Any:
         """(n,) array [s]."""
-
-    @property
-    def distance(self) -> Any:
-        """(n,) array [length]."""
-
-    @property
-    def lower_bound(self) -> Any:
-        """(n,) array [length]."""
 
 
 R = TypeVar("R", bound=Recorded)

@@ -1,9 +1,9 @@
-"""The plot of the page: distance and lower bound of the last seconds."""
+"""The plot of the page: two curves of the last seconds, such as distance and lower bound."""
 
 from __future__ import annotations
 
 from collections import deque
-from typing import Any, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,28 +30,36 @@ DIGIT, GAP = 7, 22
 """Width of a number's character, and that of its tick and margin [pixels]."""
 
 
-class Known(Protocol):
-    """What the plot shows of an instant."""
+class Curves(NamedTuple):
+    """What is plotted.
 
-    @property
-    def distance(self) -> float:
-        """Length."""
+    Attributes
+    ----------
+    names : (str, str)
+        Attributes of an instant, numbers, and of a recording, arrays of them.
+    labels : (str, str)
+        The same in words.
+    """
 
-    @property
-    def lower_bound(self) -> float:
-        """Length."""
+    names: tuple[str, str]
+    labels: tuple[str, str]
+
+
+DISTANCES = Curves(("distance", "lower_bound"), ("distance", "lower bound"))
+"""Of pairs and worlds."""
 
 
 class Plot:
-    """Distance and lower bound over time.
+    """Two curves over time.
 
     Parameters
     ----------
     server : viser.ViserServer
+    curves : Curves
     """
 
-    def __init__(self, server: Any) -> None:
-        self._server = server
+    def __init__(self, server: Any, curves: Curves = DISTANCES) -> None:
+        self._server, self._curves = server, curves
         self._trace: deque[tuple[float, float, float]] = deque(maxlen=4 * MOST_POINTS)
         self._looks, self._behind = 0, False
         self._size = 1.0
@@ -61,8 +69,8 @@ class Plot:
             (empty, empty * 0.0, empty * 0.0),
             (
                 {"label": "s"},
-                {"label": "distance", "stroke": COLOURS[0], "width": 2},
-                {"label": "lower bound", "stroke": COLOURS[1], "width": 1, "dash": (4, 4)},
+                {"label": curves.labels[0], "stroke": COLOURS[0], "width": 2},
+                {"label": curves.labels[1], "stroke": COLOURS[1], "width": 1, "dash": (4, 4)},
             ),
             scales={"x": {"time": False, "auto": True}},
             axes=(TIME_AXIS, LOOK),
@@ -72,7 +80,7 @@ class Plot:
         )
 
     def begin(self, size: float) -> None:
-        """Be the plot of bodies of that size [length]."""
+        """Be the plot of numbers of that size: of bodies theirs [length]."""
         self._size, self._scale = size, None
         self.forget()
 
@@ -81,21 +89,22 @@ class Plot:
         self._trace.clear()
         self._looks, self._behind = 0, False
 
-    def stands(self, shown: Known) -> None:
+    def stands(self, shown: Any) -> None:
         """Show level lines where nothing has moved yet."""
         if self._looks == 0:
-            level = np.ones(2)
-            self._draw(np.array([0.0, 1.0]), level * shown.distance, level * shown.lower_bound)
+            first, second = (np.full(2, value) for value in self._of(shown))
+            self._draw(np.array([0.0, 1.0]), first, second)
 
     def plays(self, player: Player[Any]) -> None:
         """Show a recording up to where it stands."""
         if self._due() or not player.playing:
             rows, run = player.behind(SPAN, MOST_POINTS), player.recording
-            self._draw(run.time[rows], run.distance[rows], run.lower_bound[rows])
+            first, second = (values[rows] for values in self._of(run))
+            self._draw(run.time[rows], first, second)
 
-    def traces(self, time: float, shown: Known) -> None:
-        """Go on with an instant of a body that is moved by hand."""
-        self._trace.append((time, shown.distance, shown.lower_bound))
+    def traces(self, time: float, shown: Any) -> None:
+        """Go on with an instant of bodies that are moved by hand, or step by step."""
+        self._trace.append((time, *self._of(shown)))
         self._behind = True
         if self._due():
             self.rests()
@@ -109,15 +118,19 @@ class Plot:
             every = -(-len(rows) // MOST_POINTS)
             self._draw(*rows[::-every][::-1].T)
 
+    def _of(self, shown: Any) -> tuple[Any, Any]:
+        first, second = (getattr(shown, name) for name in self._curves.names)
+        return first, second
+
     def _due(self) -> bool:
         self._looks += 1
         return self._looks % EVERY == 1
 
-    def _draw(self, time: Array, distance: Array, bound: Array) -> None:
-        known = np.isfinite(distance) & np.isfinite(bound)
+    def _draw(self, time: Array, first: Array, second: Array) -> None:
+        known = np.isfinite(first) & np.isfinite(second)
         if known.sum() < 2:
             return
-        curves = time[known], distance[known], bound[known]
+        curves = time[known], first[known], second[known]
         self._scale = scale = scale_of(np.concatenate(curves[1:]), self._size, self._scale)
         width = GAP + DIGIT * max(len(label) for label in scale.labels)
         upwards = {**LOOK, "size": width, "splits": scale.ticks, "values": scale.labels}

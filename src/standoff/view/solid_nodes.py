@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.solids.answer import NearestPair, SolidProximity
 from standoff.view.nodes import ARROW, BOUND_COLOUR, WITNESS_COLOUR, WITNESS_RADIUS, Colour
-from standoff.view.segments import Segments
+from standoff.view.segments import Clouds, Segments, arrow_of
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class MinimaNodes:
         self._scene, self._size = scene, size
         scene.add_frame("/minima", show_axes=False)
         self._lines = Segments(scene, "/minima")
-        self._clouds: dict[str, Any] = {}
+        self._clouds = Clouds(scene, "/minima/points", size)
         self._labels: list[Any] = []
         self._label = scene.add_label("/minima/label", "", anchor="bottom-left")
         self._ball = scene.add_icosphere(
@@ -69,13 +69,13 @@ class MinimaNodes:
         along = np.repeat(colours[:, None], 2, axis=1)
         self._lines.draw("others", ends[1:], along[1:], LINE)
         self._lines.draw("nearest", ends[:1], along[:1], NEAREST_LINE)
-        self._points("others", ends[1:], along[1:], POINT)
-        self._points("nearest", ends[:1], along[:1], NEAREST_POINT)
+        self._clouds.draw("others", ends[1:], along[1:], POINT)
+        self._clouds.draw("nearest", ends[:1], along[:1], NEAREST_POINT)
         self._normals(minima)
         outlines = [
             (outline_of(m), OVERLAP_COLOUR if m.distance < 0.0 else PATCH_COLOUR) for m in minima
         ]
-        self._plain("patches", outlines, PATCH_LINE)
+        self._lines.draw_groups("patches", outlines, PATCH_LINE)
         self._continuum(answer)
         self._show_ball(answer)
         self._write(minima, ends, text)
@@ -85,15 +85,15 @@ class MinimaNodes:
         shafts = []
         for number, m in enumerate(minima):
             length = ARROW * self._size * (1.0 if number == 0 else 0.5)
-            shafts.append(_arrow(m.point_a, m.normal, length))
-        self._plain("normals", [(each, BOUND_COLOUR) for each in shafts], SHAFT)
+            shafts.append(arrow_of(m.point_a, m.normal, length))
+        self._lines.draw_groups("normals", [(each, BOUND_COLOUR) for each in shafts], SHAFT)
 
     def _continuum(self, answer: SolidProximity) -> None:
         ends = () if answer.continuum is None else answer.continuum.ends
         pairs = np.array(ends).reshape(-1, 2, 3)
         if answer.continuum is not None and answer.continuum.kind == "line" and len(pairs):
             pairs = np.concatenate([pairs, pairs.transpose(1, 0, 2)])
-        self._plain("ends", [(pairs, END_COLOUR)], END_LINE)
+        self._lines.draw_groups("ends", [(pairs, END_COLOUR)], END_LINE)
 
     def _show_ball(self, answer: SolidProximity) -> None:
         """The ball inside both, where no place of an overlap is told."""
@@ -120,34 +120,6 @@ class MinimaNodes:
             label.text, label.visible = f"#{minima[k].key}", True
             label.position = tuple(middles[k])
 
-    def _plain(self, name: str, groups: Sequence[tuple[Array, Any]], width: float) -> None:
-        """Draw groups of pieces of line (n, 2, 3), each in a colour of its own."""
-        pieces = [np.zeros((0, 2, 3)), *(each for each, _ in groups)]
-        colours = [np.zeros((0, 2, 3), dtype=np.uint8)]
-        for each, colour in groups:
-            colours.append(np.broadcast_to(np.asarray(colour, np.uint8), (len(each), 2, 3)))
-        self._lines.draw(name, np.concatenate(pieces), np.concatenate(colours), width)
-
-    def _points(self, name: str, ends: Array, colours: Any, share: float) -> None:
-        node = self._clouds.get(name)
-        points = ends.reshape(-1, 3).astype(np.float32)
-        if node is not None and len(node.points) != len(points):
-            self._clouds.pop(name).remove()
-            node = None
-        if not len(points):
-            return
-        if node is None:
-            self._clouds[name] = self._scene.add_point_cloud(
-                f"/minima/points_{name}",
-                points,
-                colours.reshape(-1, 3),
-                point_size=share * self._size,
-                point_shape="circle",
-                precision="float32",
-            )
-            return
-        node.points, node.colors = points, colours.reshape(-1, 3)
-
 
 def drawn_minima(answer: SolidProximity) -> tuple[NearestPair, ...]:
     """Return the minima of an answer that are drawn, the nearest first: no other ways out of what
@@ -167,15 +139,3 @@ def outline_of(minimum: NearestPair) -> Array:
         np.stack([side, np.roll(side, -1, axis=0)], axis=1) for side in np.moveaxis(pairs, 1, 0)
     ]
     return np.concatenate(sides)
-
-
-def _arrow(start: Array, direction: Array, length: float) -> Array:
-    """A shaft and two pairs of barbs, (5, 2, 3)."""
-    tip = start + length * direction
-    aside = np.eye(3)[np.abs(direction).argmin()]
-    first = np.cross(direction, aside)
-    first /= np.linalg.norm(first)
-    second = np.cross(direction, first)
-    back = tip - 0.2 * length * direction
-    barbs = [(tip, back + 0.08 * length * side) for side in (first, -first, second, -second)]
-    return np.array([(start, tip), *barbs])

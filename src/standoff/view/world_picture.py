@@ -8,25 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.motion import Pose
+from standoff.view.bodies_picture import FIXED_COLOURS, BodiesPicture
 from standoff.view.gap_colours import gap_colours
-from standoff.view.nodes import COLOURS, AnswerNodes, BodyNodes, Colour, quaternion
-from standoff.view.picture import FIRM, GRIP, Aimable, aim_all
+from standoff.view.nodes import COLOURS, AnswerNodes, quaternion
+from standoff.view.picture import FIRM, GRIP
 from standoff.view.readout import beside
 from standoff.view.segments import Segments
-from standoff.view.shapes import Shape, shape_of
 from standoff.view.tolerances import SEEN_INTO
 from standoff.view.world_readout import closest_text
 from standoff.world import World, WorldAnswer
-from standoff.world.packed import pieces_of
 from standoff.world.pair_answer import convex
-from standoff.world.pieces import PieceUnion
 
 Array = NDArray[np.float64]
-
-FIXED_COLOURS: tuple[Colour, Colour] = ((205, 205, 205), (120, 120, 120))
-"""Of bodies that never move."""
 
 MOST_LINES = 200
 """Near pairs that are drawn: of more, the nearest."""
@@ -34,11 +28,8 @@ MOST_LINES = 200
 LINE, CLOSEST_LINE = 2.0, 5.0
 """Thickness of the line of a pair, and of the closest one's [pixels]."""
 
-HUGE = 10.0
-"""Size of a body over the usual one from which it is no reason for a camera to step back."""
 
-
-class WorldPicture(Aimable):
+class WorldPicture(BodiesPicture):
     """What a server shows of a world; all else in its scene is taken away.
 
     Parameters
@@ -52,35 +43,15 @@ class WorldPicture(Aimable):
     ----------
     handle : viser's handle or None
         Of the body that can be dragged.
-    planar : bool
-    size : float
-        Of a usual body [length].
-    sizes : (n,) array
-        Of each body [length].
     """
 
     def __init__(self, server: Any, world: World, unit: str) -> None:
-        self._server, self._unit = server, unit
-        self._scene = scene = server.scene
-        scene.reset()
-        scene.configure_default_lights(cast_shadow=False)
-        self.planar = world.model.planar
-        shapes: dict[int, Shape] = {}
         still = set(world.fixed)
-        self._bodies = [
-            _Drawn(
-                scene, f"/body_{k}", body, FIXED_COLOURS if name in still else COLOURS[0], shapes
-            )
-            for k, (name, body) in enumerate(world.bodies.items())
-        ]
-        self._bounded = np.array(
-            [all(piece.body.bounded for piece in pieces_of(body)) for body in world.bodies.values()]
-        )
-        self.sizes = np.array([body.size for body in self._bodies])
-        usual = self.sizes[self._bounded]
-        self.size = float(np.median(usual)) if len(usual) else float(self.sizes.max())
+        colours = [FIXED_COLOURS if name in still else COLOURS[0] for name in world.bodies]
+        super().__init__(server, tuple(world.bodies.values()), colours, planar=world.model.planar)
+        self._unit = unit
+        self._scene = scene = server.scene
         self._still = world.model.fixed_rows.tolist()
-        self._placed = np.full((len(world), 4, 4), np.nan)
         self._pairs = PairLines(scene)
         self._closest = AnswerNodes(scene, self.size)
         self.handle: Any = None
@@ -112,19 +83,6 @@ class WorldPicture(Aimable):
         self._put_handle()
         self.handle.on_update(moved)
 
-    def aim(self, poses: Array) -> None:
-        """Point the camera of each new page at the bodies, (n, 4, 4)."""
-        seen = self._bounded & (self.sizes <= HUGE * self.size)
-        if not seen.any():
-            seen = np.ones(len(poses), dtype=bool)
-        middles = np.array([body.middle for body in self._bodies])
-        middles = np.einsum("nij,nj->ni", poses[:, :3, :3], middles) + poses[:, :3, 3]
-        low = (middles - 0.5 * self.sizes[:, None])[seen].min(axis=0)
-        high = (middles + 0.5 * self.sizes[:, None])[seen].max(axis=0)
-        # A little wide: the panel covers the right of the window.
-        reach = 0.55 * float(np.linalg.norm(high - low))
-        aim_all(self._server, 0.5 * (low + high), reach, planar=self.planar)
-
     def show(self, answer: WorldAnswer, end: float, *, held: bool = False) -> None:
         """Draw an answer.
 
@@ -137,9 +95,7 @@ class WorldPicture(Aimable):
             The handle is in a user's hand: it is left there.
         """
         poses = answer.state.poses
-        for row in np.flatnonzero((poses != self._placed).any(axis=(1, 2))):
-            self._bodies[row].place(Pose.of(poses[row]))
-        self._placed = poses
+        self.place(poses)
         if not held:
             self._put_handle()
         self._show_glass(answer)
@@ -171,53 +127,6 @@ class WorldPicture(Aimable):
         if self.handle is not None and np.isfinite(self._placed[self._held_row]).all():
             pose = Pose.of(self._placed[self._held_row])
             self.handle.wxyz, self.handle.position = quaternion(pose), tuple(pose.translation)
-
-
-class _Drawn:
-    """The nodes of one body of the world, all its pieces.
-
-    Attributes
-    ----------
-    size : float
-        Of a box around its pieces [length].
-    middle : (3,) array
-        Of that box, body frame.
-    """
-
-    def __init__(
-        self,
-        scene: Any,
-        name: str,
-        body: Body | PieceUnion,
-        colours: tuple[Colour, Colour],
-        shapes: dict[int, Shape],
-    ) -> None:
-        self.frame = scene.add_frame(name, show_axes=False)
-        self._pieces = []
-        ends = []
-        for number, (piece, pose) in enumerate(pieces_of(body)):
-            # Bodies that are one object are measured once.
-            if id(piece) not in shapes:
-                shapes[id(piece)] = shape_of(piece)
-            shape = shapes[id(piece)]
-            nodes = BodyNodes(scene, f"{name}/piece_{number}", shape, colours, corners=False)
-            nodes.place(pose)
-            self._pieces.append(nodes)
-            middle = pose.apply(shape.middle)
-            ends += [middle - 0.5 * shape.size, middle + 0.5 * shape.size]
-        low, high = np.min(ends, axis=0), np.max(ends, axis=0)
-        self.middle = 0.5 * (low + high)
-        one = len(self._pieces) == 1
-        self.size = shape.size if one else float(np.linalg.norm(high - low)) / np.sqrt(3.0)
-
-    def place(self, pose: Pose) -> None:
-        """Put the body at a pose."""
-        self.frame.wxyz, self.frame.position = quaternion(pose), tuple(pose.translation)
-
-    def glass(self, on: bool) -> None:
-        """Become glass, or solid again."""
-        for nodes in self._pieces:
-            nodes.glass(on)
 
 
 class PairLines(Segments):
