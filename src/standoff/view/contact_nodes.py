@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.simulation.pair_contacts import PairContact
+from standoff.simulation.pair_contacts import PairContact, SpotForce
 from standoff.simulation.solid_places import ContactPlace
 from standoff.view.nodes import ARROW, BOUND_COLOUR, WITNESS_COLOUR, Colour
 from standoff.view.segments import Clouds, Segments, arrow_of
@@ -16,7 +16,7 @@ from standoff.view.solid_nodes import LABELLED, LINE, OVERLAP_COLOUR, POINT, SHA
 
 Array = NDArray[np.float64]
 
-FORCE_LINE = 5.0
+FORCE_LINE = 4.0
 """Thickness of the arrows of forces [pixels]."""
 
 FORCE_COLOUR: Colour = (215, 120, 0)
@@ -84,8 +84,8 @@ class ContactNodes:
         self._clouds.draw("spots", points, _all(OVERLAP_COLOUR, len(points)), SPOT)
         normals = [arrow_of(s.point, s.normal, 0.5 * ARROW * self._size) for s in spots]
         self._lines.draw_groups("normals", [(each, BOUND_COLOUR) for each in normals], SHAFT)
-        self._lines.draw_groups("forces", [(f, FORCE_COLOUR) for f in _forces(spots, arrows)],
-                                FORCE_LINE)  # fmt: skip
+        forces = [(each, FORCE_COLOUR) for each in _forces(spots, arrows)]
+        self._lines.draw_groups("forces", forces, FORCE_LINE)
         self._write(texts)
 
     def _write(self, texts: Sequence[tuple[Array, str]]) -> None:
@@ -103,7 +103,7 @@ def drawn_places(contacts: Sequence[PairContact]) -> list[ContactPlace]:
     return [p for each in contacts for p in each.places if p.felt or p.distance > 0.0]
 
 
-def _forces(spots: Sequence[Any], arrows: Arrows) -> list[Array]:
+def _forces(spots: Sequence[SpotForce], arrows: Arrows) -> list[Array]:
     found = []
     for spot in spots:
         length = arrows.length(spot.force)

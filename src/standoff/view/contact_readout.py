@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.simulation.pair_contacts import PairContact
+from standoff.simulation.system_state import Energy
 from standoff.simulation.units import Units
 from standoff.tracking import Status
 from standoff.view.contact_nodes import FORCE_COLOUR, Arrows
@@ -25,8 +26,13 @@ LIST = (
     'font-variant-numeric:tabular-nums" data-of="contacts-list">{}</table>'
 )
 HEAD = '<tr data-pair="{}"><td colspan="4" style="font-weight:600;padding-top:.4em">{}</td></tr>'
-PLACE = '<tr data-place="{}"><td>place #{}</td><td colspan="3">{}</td></tr>'
+PLACE = (
+    '<tr data-place="{}"><td style="white-space:nowrap">place #{}</td><td colspan="3">{}</td></tr>'
+)
 SPOT = '<tr data-spot="{}">' + '<td style="white-space:nowrap">{}</td>' * 4 + "</tr>"
+ENERGIES = (
+    '<table style="font-size:.875em;margin:.2em .9em;font-variant-numeric:tabular-nums">{}</table>'
+)
 DOT = '<span style="color:rgb{}">●</span> '
 
 
@@ -62,12 +68,8 @@ def simulation_readout(instant: Instant, given: Simulated, arrows: Arrows, more:
         (second + "greatest", "greatest", length(instant.greatest, units.force)),
         ("places", "places", f"{places}, of {counted(len(instant.contacts), 'pair')}"),
         ("distance", "distance", length(instant.distance, units.length)),
-        ("deepest", "deepest", f"{length(instant.deepest + 0.0, units.length)} since the start"),
+        ("deepest", "deepest", f"{length(instant.deepest + 0.0, units.length, SHORT)} so far"),
         ("certified", "certified", certified_text(instant, given)),
-    ]
-    rows += [
-        (name, name, length(getattr(instant.energy, name) + 0.0, units.energy, 6))
-        for name in ("kinetic", "potential", "stored", "dissipated", "supplied", "balance")
     ]
     rows.append((DOT.format(FORCE_COLOUR) + "arrows", "arrows", arrows_text(arrows, units)))
     if more:
@@ -78,24 +80,25 @@ def simulation_readout(instant: Instant, given: Simulated, arrows: Arrows, more:
     )
 
 
+def energy_table(energy: Energy, units: Units) -> str:
+    """Return the table of energies, as HTML."""
+    names = ("kinetic", "potential", "stored", "dissipated", "supplied", "balance")
+    told = ((name, length(getattr(energy, name) + 0.0, units.energy, 6)) for name in names)
+    return ENERGIES.format("".join(ROW.format(name, name, escape(text)) for name, text in told))
+
+
 def arrows_text(arrows: Arrows, units: Units) -> str:
     """Return how long the arrow of a force is."""
     one = f"1 {units.force}".rstrip()
     return (
-        f"{one} is {length(arrows.scale, units.length, 3)} long, "
-        f"{length(arrows.longest, units.length, 3)} the longest"
+        f"{one} is {length(arrows.scale, units.length, 3)} long, at most "
+        f"{length(arrows.longest, units.length, 3)}"
     )
 
 
 def is_sound(status: Status) -> bool:
     """Is an answer certified, or proven as far as a tick proves it?"""
-    return status in (
-        Status.CONVERGED,
-        Status.TRACKING,
-        Status.LOCAL,
-        Status.GLOBAL,
-        Status.FAR,
-    )
+    return status.certified or status in (Status.TRACKING, Status.LOCAL)
 
 
 def certified_text(instant: Instant, given: Simulated) -> str:
@@ -145,7 +148,7 @@ def _rows_of(each: PairContact, given: Simulated, units: Units) -> Iterator[str]
         told = escape(length(place.distance, units.length, 6))
         if place.distance < 0.0:
             told = IN_OVERLAP.format(told)
-        yield PLACE.format(place.key, place.key, told + ("" if place.felt else ANOTHER))
+        yield PLACE.format(place.key, f"place #{place.key}", told + ("" if place.felt else ANOTHER))
     for number, spot in enumerate(each.spots, 1):
         depth = length(spot.depth, units.length, SHORT)
         pushed = length(float(np.linalg.norm(spot.force)), units.force, SHORT)

@@ -49,6 +49,8 @@ class SimulationPanel(MotionPanel):
             self._make_look()
         with tabs.add_tab("Contacts"):
             self._contacts = server.gui.add_html("")
+        with tabs.add_tab("Energy"):
+            self._energy = server.gui.add_html("")
 
     def _make_steps(self) -> None:
         self._step = self._gui.add_button("One step")
@@ -93,10 +95,10 @@ class SimulationPanel(MotionPanel):
         self._play.visible = self._speed.visible = True
         self._plot.begin(usual)
 
-    def show(self, readout: str, contacts: str, instant: Instant) -> None:
-        """Show the numbers and contacts of an instant."""
-        self._readout.content = readout
-        self._contacts.content = contacts
+    def show(self, texts: tuple[str, str, str], instant: Instant) -> None:
+        """Show an instant; `texts` are its numbers, its contacts and its energies."""
+        for element, text in zip((self._readout, self._contacts, self._energy), texts, strict=True):
+            element.content = text
         self._plot.stands(instant)
 
     def traces(self, instant: Instant) -> None:

@@ -14,7 +14,7 @@ from standoff.view.contact_readout import force_texts
 from standoff.view.nodes import COLOURS
 from standoff.view.shown_simulation import Instant, Simulated
 
-RESTING = 0.5
+RESTING = 1.0
 """Length of the arrow of the usual force, over the scene's size."""
 
 

@@ -9,7 +9,8 @@ from typing import Any
 from standoff.simulation.operator import Operator
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_state import SystemState
-from standoff.view.contact_readout import contacts_list, simulation_readout
+from standoff.simulation.units import Units
+from standoff.view.contact_readout import contacts_list, energy_table, simulation_readout
 from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player
 from standoff.view.server import name_tab
@@ -80,10 +81,14 @@ class SimulationStage(ABC):
     def _show(self, instant: Instant, more: str = "") -> None:
         self.instant = instant
         arrows = self.picture.arrows(self.usual)
-        text = simulation_readout(instant, self.given, arrows, more)
+        texts = (
+            simulation_readout(instant, self.given, arrows, more),
+            contacts_list(instant, self.given),
+            energy_table(instant.energy, Units.of(self.given.unit)),
+        )
         with self._server.atomic():
             self.picture.show(instant, arrows)
-            self.panel.show(text, contacts_list(instant, self.given), instant)
+            self.panel.show(texts, instant)
 
     @abstractmethod
     def step(self) -> None:
