@@ -61,7 +61,7 @@ def test_spots_push_what_the_bodies_feel(both: tuple[Operator, SystemRun]) -> No
         touched += bool(spots)
         if spots:
             deepest = max(spot.depth for spot in spots)
-            assert deepest == pytest.approx(-run.distances[row, 0], abs=1e-12)
+            assert deepest == pytest.approx(-run.distances[row, 0], rel=1e-4)
     assert touched > 30
     # Friction is among them while it slides.
     sliding = run.forces[:, 0, 0]

@@ -41,9 +41,9 @@ def contacts_verdict(contacts: Sequence[PairContact], total: float, units: Units
     pushing = [each for each in contacts if each.spots]
     if not pushing:
         return "nothing touches"
-    spots = counted(sum(len(each.spots) for each in pushing), "spot")
-    where = f"of {counted(len(pushing), 'pair')}"
-    return f"{spots} {where} push with {length(total, units.force, SHORT)} in all"
+    spots = sum(len(each.spots) for each in pushing)
+    push = f"{counted(spots, 'spot')} of {counted(len(pushing), 'pair')} push"
+    return f"{push}{'es' if spots == 1 else ''} with {length(total, units.force, SHORT)} in all"
 
 
 def simulation_readout(instant: Instant, given: Simulated, arrows: Arrows, more: str = "") -> str:
@@ -62,9 +62,14 @@ def simulation_readout(instant: Instant, given: Simulated, arrows: Arrows, more:
     places = sum(len(each.places) for each in instant.contacts)
     spots = sum(len(each.spots) for each in instant.contacts)
     first, second = (MARK.format(colour) for colour in COLOURS)
+    forces = f"{length(instant.total, units.force)}, {counted(spots, 'spot')}"
     rows = [
         ("time", "time", f"{instant.time:.6g} s"),
-        (first + "forces", "forces", f"{length(instant.total, units.force)}, of {spots} spots"),
+        (
+            first + "forces",
+            "forces",
+            f"{length(instant.total, units.force)}, {counted(spots, 'spot')}",
+        ),
         (second + "greatest", "greatest", length(instant.greatest, units.force)),
         ("places", "places", f"{places}, of {counted(len(instant.contacts), 'pair')}"),
         ("distance", "distance", length(instant.distance, units.length)),
