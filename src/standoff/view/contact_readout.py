@@ -65,11 +65,7 @@ def simulation_readout(instant: Instant, given: Simulated, arrows: Arrows, more:
     forces = f"{length(instant.total, units.force)}, {counted(spots, 'spot')}"
     rows = [
         ("time", "time", f"{instant.time:.6g} s"),
-        (
-            first + "forces",
-            "forces",
-            f"{length(instant.total, units.force)}, {counted(spots, 'spot')}",
-        ),
+        (first + "forces", "forces", forces),
         (second + "greatest", "greatest", length(instant.greatest, units.force)),
         ("places", "places", f"{places}, of {counted(len(instant.contacts), 'pair')}"),
         ("distance", "distance", length(instant.distance, units.length)),
