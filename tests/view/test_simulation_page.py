@@ -275,6 +275,7 @@ def test_words_of_contacts() -> None:
     text = contacts_list(instant(first), given)
     assert "&lt;a&gt; – b: NOT_CERTIFIED, 4 N" in text
     assert text.count("another way out") == 2
+    assert re.findall(r">([^<>]*#[^<>]*)<", text) == ["place #3", "place #4", "place #5"]
     assert text.count(str(OVERLAP_COLOUR)) == 2
     assert drawn_places([first]) == [felt, near]
     many = first._replace(spots=(spot,) * 96)

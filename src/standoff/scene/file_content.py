@@ -64,7 +64,7 @@ class FileContent:
     motions: Mapping[str, Table]
 
 
-def of_a_simulation(top: Mapping[str, object]) -> str | None:
+def of_a_simulation(top: Table | Mapping[str, object]) -> str | None:
     """Return the key that makes a file the scene of a simulation; None of another's."""
     if any(key in top for key in ("pair", "pairs", "world")):
         return None

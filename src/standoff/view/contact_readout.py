@@ -26,10 +26,9 @@ LIST = (
     'font-variant-numeric:tabular-nums" data-of="contacts-list">{}</table>'
 )
 HEAD = '<tr data-pair="{}"><td colspan="4" style="font-weight:600;padding-top:.4em">{}</td></tr>'
-PLACE = (
-    '<tr data-place="{}"><td style="white-space:nowrap">place #{}</td><td colspan="3">{}</td></tr>'
-)
-SPOT = '<tr data-spot="{}">' + '<td style="white-space:nowrap">{}</td>' * 4 + "</tr>"
+CELL = '<td style="white-space:nowrap">{}</td>'
+PLACE = f'<tr data-place="{{}}">{CELL}<td colspan="3">{{}}</td></tr>'
+SPOT = f'<tr data-spot="{{}}">{4 * CELL}</tr>'
 ENERGIES = (
     '<table style="font-size:.875em;margin:.2em .9em;font-variant-numeric:tabular-nums">{}</table>'
 )
