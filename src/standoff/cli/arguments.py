@@ -216,6 +216,8 @@ class SimulateCommand:
 class ViewCommand:
     """Show a scene in the browser: drag a body, and watch witness points and distance.
 
+    The scene of a simulation is run first, then played with all its contacts.
+
     Example: standoff view examples/lenses.toml --open
 
     Exit codes: 0 closed, 2 bad input.
