@@ -4,21 +4,15 @@ Run: python docs/images/make_live_simulation_picture.py [FILE].
 Needs the extra `view`, playwright and Chromium.
 """
 
-import shutil
-import sys
-from pathlib import Path
-
 import numpy as np
-from make_live_solids_picture import OPTIONS
+from make_live_solids_picture import take, target
 from make_peg_picture import turned
-from playwright.sync_api import sync_playwright
 
 import standoff as so
 from standoff import simulation as sim
 from standoff.view.shown_simulation import Simulated
 from standoff.view.simulation_page import SimulationPage
 
-HERE = Path(__file__).parent
 WINDOW = {"width": 1280, "height": 860}
 NAMES = ("plate", "bush", "peg", "box")
 STEEL = 7800.0  # kg/m³
@@ -45,25 +39,12 @@ def run() -> sim.SystemRun:
 
 
 def main() -> None:
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "live-simulation.png"
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
     found = run()
     given = Simulated(found, "A peg in its bush, and a box", "m", NAMES)
-    with SimulationPage(given) as page, sync_playwright() as running:
+    with SimulationPage(given) as page:
         page.seek(float(found.times[-1]))
-        browser = running.chromium.launch(executable_path=chromium, args=OPTIONS)
-        tab = browser.new_page(viewport=WINDOW)
-        tab.goto(page.address)
-        tab.get_by_role("tab", name="Contacts").click(timeout=60_000)
-        (client,) = page.server.get_clients().values()
-        client.camera.position = (0.13, -0.44, 0.2)
-        client.camera.look_at = (0.055, 0.0, 0.04)
-        tab.wait_for_timeout(15_000)  # drawn without a graphics card
-        tab.evaluate(
-            "document.querySelectorAll('[role=alert]').forEach(e => e.style.display = 'none')"
-        )
-        tab.screenshot(path=target)
-        browser.close()
+        camera = (0.13, -0.44, 0.2), (0.055, 0.0, 0.04)
+        take(page, target("live-simulation.png"), WINDOW, "Contacts", camera)
 
 
 if __name__ == "__main__":

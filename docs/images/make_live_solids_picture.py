@@ -8,6 +8,7 @@ import shutil
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from playwright.sync_api import sync_playwright
@@ -62,29 +63,40 @@ def bridge() -> Solid:
     return Solid.from_brep(corners, edges, faces, name="bridge")
 
 
-def main() -> None:
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "live-solids.png"
+def target(name: str) -> Path:
+    """The file that is named on the command line, else one of that name here."""
+    return Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / name
+
+
+def take(page: Any, file: Path, window: dict[str, int], tab_name: str, camera: Any) -> None:
+    """Take a picture of a page with a tab of its panel open; `camera` is where it stands, and what
+    it looks at."""
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    with sync_playwright() as running:
+        browser = running.chromium.launch(executable_path=chromium, args=OPTIONS)
+        tab = browser.new_page(viewport=window)
+        tab.goto(page.address)
+        tab.get_by_role("tab", name=tab_name).click(timeout=60_000)
+        (client,) = page.server.get_clients().values()
+        client.camera.position, client.camera.look_at = camera
+        tab.wait_for_timeout(15_000)  # drawn without a graphics card
+        tab.evaluate(
+            "document.querySelectorAll('[role=alert]').forEach(e => e.style.display = 'none')"
+        )
+        tab.screenshot(path=file)
+        browser.close()
+
+
+def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         scene = Path(folder) / "scene.toml"
         save_boundary(scene.with_name("bridge.json"), bridge().boundary)
         scene.write_text(SCENE, "utf-8")
         page = so.view(scene, minima=8.0, patch=1.0, open=False)
-    with page, sync_playwright() as running:
+    with page:
         page.stage.hand("nothing")
-        browser = running.chromium.launch(executable_path=chromium, args=OPTIONS)
-        tab = browser.new_page(viewport=WINDOW)
-        tab.goto(page.address)
-        tab.get_by_role("tab", name="Minima").click(timeout=60_000)
-        (client,) = page.server.get_clients().values()
-        client.camera.position = (54.0, -92.0, 52.0)
-        client.camera.look_at = (17.0, 0.0, 7.0)
-        tab.wait_for_timeout(15_000)  # drawn without a graphics card
-        tab.evaluate(
-            "document.querySelectorAll('[role=alert]').forEach(e => e.style.display = 'none')"
-        )
-        tab.screenshot(path=target)
-        browser.close()
+        camera = (54.0, -92.0, 52.0), (17.0, 0.0, 7.0)
+        take(page, target("live-solids.png"), WINDOW, "Minima", camera)
 
 
 if __name__ == "__main__":

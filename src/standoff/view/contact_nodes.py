@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from standoff.simulation.pair_contacts import PairContact, SpotForce
 from standoff.simulation.solid_places import ContactPlace
-from standoff.view.nodes import ARROW, BOUND_COLOUR, WITNESS_COLOUR, Colour
+from standoff.view.nodes import ARROW, BOUND_COLOUR, Colour
 from standoff.view.segments import Clouds, Segments, arrow_of
-from standoff.view.solid_nodes import LABELLED, LINE, OVERLAP_COLOUR, POINT, SHAFT
+from standoff.view.solid_nodes import LABELLED, LINE, OVERLAP_COLOUR, POINT, SHAFT, ends_of
 
 Array = NDArray[np.float64]
 
@@ -70,13 +70,7 @@ class ContactNodes:
         self, contacts: Sequence[PairContact], arrows: Arrows, texts: Sequence[tuple[Array, str]]
     ) -> None:
         """Draw contacts; `texts` stand at points (3,)."""
-        places = drawn_places(contacts)
-        ends = np.array([(p.point_a, p.point_b) for p in places]).reshape(-1, 2, 3)
-        colours = np.array(
-            [OVERLAP_COLOUR if p.distance < 0.0 else WITNESS_COLOUR for p in places],
-            dtype=np.uint8,
-        ).reshape(-1, 3)
-        along = np.repeat(colours[:, None], 2, axis=1)
+        ends, along = ends_of(drawn_places(contacts))
         self._lines.draw("places", ends, along, LINE)
         self._clouds.draw("places", ends, along, POINT)
         spots = [spot for each in contacts for spot in each.spots]

@@ -23,6 +23,12 @@ class Plays(Protocol):
     def speed(self, factor: float) -> None: ...
 
 
+class Glazed(Protocol):
+    """What a user can ask of how bodies look."""
+
+    def glass(self, on: bool) -> None: ...
+
+
 class MotionPanel:
     """What every panel has: an answer in words, its plot, and what plays a motion; a subclass says
     where that stands.
@@ -72,6 +78,15 @@ class MotionPanel:
         async def _(event: Any) -> None:
             factor = SPEEDS.get(event.target.value, 1.0)
             self._later(lambda: self._player.speed(factor))
+
+    def _make_glass(self, asks: Glazed) -> None:
+        self._glass = self._gui.add_checkbox("as if of glass", True)
+
+        @self._glass.on_update
+        async def _(event: Any) -> None:
+            on = bool(event.target.value)
+            if event.client is not None:
+                self._later(lambda: asks.glass(on))
 
     def _moves(self, player: Player[Any] | None) -> None:
         """Show the part, with the times of a motion, or hide it where nothing moves by itself."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from standoff.view.motion_panel import MotionPanel, Plays
+from standoff.view.motion_panel import Glazed, MotionPanel, Plays
 from standoff.view.player import Player
 from standoff.view.plot import Curves
 from standoff.view.shown_simulation import Instant
@@ -17,12 +17,11 @@ STRETCHES = {"×0.1": 0.1, "×0.3": 0.3, "×1": 1.0, "×3": 3.0, "×10": 10.0}
 """How much longer the arrows of forces are than usual, by the words of the page."""
 
 
-class Asks(Plays, Protocol):
+class Asks(Plays, Glazed, Protocol):
     """What a user of the page can ask for."""
 
     def step(self) -> None: ...
     def back(self) -> None: ...
-    def glass(self, on: bool) -> None: ...
     def stretch(self, factor: float) -> None: ...
 
 
@@ -46,7 +45,8 @@ class SimulationPanel(MotionPanel):
         with tabs.add_tab("Move"):
             self._make_playing()
             self._make_steps()
-            self._make_look()
+            self._make_arrows()
+            self._make_glass(asks)
         with tabs.add_tab("Contacts"):
             self._contacts = server.gui.add_html("")
         with tabs.add_tab("Energy"):
@@ -64,20 +64,13 @@ class SimulationPanel(MotionPanel):
         async def _(_: Any) -> None:
             self._later(self._asks.back)
 
-    def _make_look(self) -> None:
+    def _make_arrows(self) -> None:
         self._stretch = self._gui.add_dropdown("arrows", tuple(STRETCHES), initial_value="×1")
-        self._glass = self._gui.add_checkbox("as if of glass", True)
 
         @self._stretch.on_update
         async def _(event: Any) -> None:
             factor = STRETCHES.get(event.target.value, 1.0)
             self._later(lambda: self._asks.stretch(factor))
-
-        @self._glass.on_update
-        async def _(event: Any) -> None:
-            on = bool(event.target.value)
-            if event.client is not None:
-                self._later(lambda: self._asks.glass(on))
 
     def begin(self, title: str, player: Player[Any] | None, usual: float) -> None:
         """Set the panel up.

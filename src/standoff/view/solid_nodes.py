@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.simulation.solid_places import ContactPlace
 from standoff.solids.answer import NearestPair, SolidProximity
 from standoff.view.nodes import ARROW, BOUND_COLOUR, WITNESS_COLOUR, WITNESS_RADIUS, Colour
 from standoff.view.segments import Clouds, Segments, arrow_of
@@ -61,12 +62,7 @@ class MinimaNodes:
     def show(self, answer: SolidProximity, text: str) -> None:
         """Draw what an answer tells; `text` stands beside the nearest minimum."""
         minima = drawn_minima(answer)
-        ends = np.array([(m.point_a, m.point_b) for m in minima]).reshape(-1, 2, 3)
-        colours = np.array(
-            [OVERLAP_COLOUR if m.distance < 0.0 else WITNESS_COLOUR for m in minima],
-            dtype=np.uint8,
-        ).reshape(-1, 3)
-        along = np.repeat(colours[:, None], 2, axis=1)
+        ends, along = ends_of(minima)
         self._lines.draw("others", ends[1:], along[1:], LINE)
         self._lines.draw("nearest", ends[:1], along[:1], NEAREST_LINE)
         self._clouds.draw("others", ends[1:], along[1:], POINT)
@@ -119,6 +115,16 @@ class MinimaNodes:
         for label, k in zip(self._labels, keyed, strict=False):
             label.text, label.visible = f"#{minima[k].key}", True
             label.position = tuple(middles[k])
+
+
+def ends_of(pairs: Sequence[NearestPair | ContactPlace]) -> tuple[Array, Any]:
+    """Return both points of each of some pairs of points, (n, 2, 3), and their colours, that of an
+    overlap where they are below 0."""
+    ends = np.array([(p.point_a, p.point_b) for p in pairs]).reshape(-1, 2, 3)
+    colours = np.array(
+        [OVERLAP_COLOUR if p.distance < 0.0 else WITNESS_COLOUR for p in pairs], dtype=np.uint8
+    ).reshape(-1, 3)
+    return ends, np.repeat(colours[:, None], 2, axis=1)
 
 
 def drawn_minima(answer: SolidProximity) -> tuple[NearestPair, ...]:

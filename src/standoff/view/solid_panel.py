@@ -7,14 +7,13 @@ from typing import Any, Protocol
 
 from standoff.solids.answer import SolidProximity
 from standoff.view.live_solids import known_of
+from standoff.view.motion_panel import Glazed
 from standoff.view.pair_panel import Hands, PairPanel
 from standoff.view.solid_readout import minima_list, solid_readout
 
 
-class Asks(Hands, Protocol):
+class Asks(Hands, Glazed, Protocol):
     """What a user of the page can ask for."""
-
-    def glass(self, on: bool) -> None: ...
 
 
 class SolidPanel(PairPanel):
@@ -39,15 +38,6 @@ class SolidPanel(PairPanel):
             self._make_glass(asks)
         with tabs.add_tab("Minima"):
             self._minima = server.gui.add_html("")
-
-    def _make_glass(self, asks: Asks) -> None:
-        self._glass = self._gui.add_checkbox("as if of glass", True)
-
-        @self._glass.on_update
-        async def _(event: Any) -> None:
-            on = bool(event.target.value)
-            if event.client is not None:
-                self._later(lambda: asks.glass(on))
 
     def show(self, answer: SolidProximity) -> None:
         """Show the numbers of an answer."""
