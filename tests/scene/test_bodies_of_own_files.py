@@ -16,7 +16,6 @@ from standoff.cli.entry import main
 from standoff.robots.obstacles import read_obstacles
 from standoff.scene import Scene, SceneError, load_scene, query
 from standoff.solids import Solid, SolidProximity, save_boundary
-from standoff.view.opening import of_scene, page_of
 
 BODIES = """version = 1
 length_unit = "mm"
@@ -245,8 +244,6 @@ every = 10
 
 
 def test_what_takes_convex_bodies_alone_says_so(folder: Path) -> None:
-    with pytest.raises(so.StandoffError, match="live page"):
-        page_of(of_scene(loaded(folder, WORLD)), host="localhost", port=None)
     ring = loaded(folder, PAIR).bodies["ring"]
     for obstacle in (ring, so.compound({"ring": ring})):
         with pytest.raises(so.StandoffError, match="give its convex pieces, as a Compound"):

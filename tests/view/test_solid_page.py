@@ -380,6 +380,50 @@ def test_what_stands_beside_the_nearest(told: Any) -> None:
     assert text.count(str(OVERLAP_COLOUR)) == 2
 
 
+def test_a_world_draws_what_it_tells_of_all_its_pairs_of_solids() -> None:
+    """Two feet under a lid, and a ball beside both: of the lid and the ball, which are convex, the
+    line of their pair. A world tells the nearest minimum, at both ends of its edge, or the deepest
+    place."""
+    solids = {"feet": prism(OUTLINE, 1.0), "lid": LID, "ball": so.shapes.sphere(0.2)}
+    world = so.World(solids, minima=0.45, within=3.0, fixed={"feet": np.eye(4)})
+    away = Pose.exp((0, 0, 0), (5.0, 1.5, 0.5))
+
+    with so.view(world, {"lid": over(0.1), "ball": away}, open=False) as page:
+        stage, panel = page.stage, page.panel
+        page._asked.put(lambda: page.hand(0))
+        for height in (0.1, 0.002, -0.01, 0.05):
+            there = over(height)
+            page._asked.put(lambda there=there: stage._drag(0, TURNED, there.translation))
+            until(lambda there=there: stage.live.poses[0, 1, 3] == there.translation[1])
+            truth = heights(height)
+            drawn = lines(page, "nearest", "others")
+            lengths = np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1)
+            assert lengths[:-1] == pytest.approx(np.full(len(drawn) - 1, abs(truth[0])), abs=1e-6)
+            # The last one is that of the ball and a foot, from its corner at (3, 1).
+            assert lengths[-1] == pytest.approx(np.hypot(2.0, 0.5) - 0.2, abs=1e-6)
+            expected = WITNESS_COLOUR if truth[0] > 0.0 else OVERLAP_COLOUR
+            assert colours(page, "nearest") == {expected}
+            said = "overlap in one place, depth" if truth[0] < 0.0 else "apart, distance"
+            until(lambda said=said: f"feet – lid: {said}" in panel._readout.content)
+            until(lambda truth=truth: f"{abs(truth[0]):.4g}" in panel._readout.content)
+        # The ball is nearest to the lid's edge: two convex bodies, and no minimum of theirs.
+        page._asked.put(lambda: page.hand(1))
+        page._asked.put(lambda: stage._drag(1, [1.0, 0.0, 0.0, 0.0], [4.72, 1.55, 0.5]))
+        until(lambda: stage.live.poses[1, 0, 3] == 4.72)
+        assert stage.live.answer.closest.names == ("lid", "ball")
+        until(lambda: stage.picture._closest._label.text.startswith("lid – ball: "))
+        assert not stage.picture._minima._label.visible
+        assert len(lines(page, "others")) > 1
+        assert "feet - lid: apart" in panel._matrix.content
+
+
+def test_a_world_of_planar_solids_is_refused() -> None:
+    disc = PlanarSolid.from_loops([ConicArc((0, 0), (1, 0), (0, 1))])
+    world = so.World({"disc": disc, "other": disc})
+    with pytest.raises(ValueError, match="'disc' is or has a planar solid"):
+        so.view(world, [np.eye(4), Pose.exp((0, 0, 0), (3, 0, 0)).matrix], open=False)
+
+
 @pytest.mark.usefixtures("slowly")
 def test_a_solid_dragged_in_a_browser(scene: Path, chromium: Any, tab: Callable[..., Any]) -> None:
     scene.write_text(

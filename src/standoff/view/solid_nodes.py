@@ -59,42 +59,46 @@ class MinimaNodes:
             "/minima/ball", 1.0, OVERLAP_COLOUR, opacity=0.5, visible=False
         )
 
-    def show(self, answer: SolidProximity, text: str) -> None:
-        """Draw what an answer tells; `text` stands beside the nearest minimum."""
-        minima = drawn_minima(answer)
+    def show(
+        self, answer: SolidProximity | None, text: str, others: Sequence[NearestPair] = ()
+    ) -> None:
+        """Draw what an answer tells, nothing of None, and minima of other pairs; `text` stands
+        beside the nearest minimum."""
+        own = () if answer is None else drawn_minima(answer)
+        minima, first = (*own, *others)[:MOST_DRAWN], len(own[:1])
         ends, along = ends_of(minima)
-        self._lines.draw("others", ends[1:], along[1:], LINE)
-        self._lines.draw("nearest", ends[:1], along[:1], NEAREST_LINE)
-        self._clouds.draw("others", ends[1:], along[1:], POINT)
-        self._clouds.draw("nearest", ends[:1], along[:1], NEAREST_POINT)
-        self._normals(minima)
+        self._lines.draw("others", ends[first:], along[first:], LINE)
+        self._lines.draw("nearest", ends[:first], along[:first], NEAREST_LINE)
+        self._clouds.draw("others", ends[first:], along[first:], POINT)
+        self._clouds.draw("nearest", ends[:first], along[:first], NEAREST_POINT)
+        self._normals(minima, first)
         outlines = [
             (outline_of(m), OVERLAP_COLOUR if m.distance < 0.0 else PATCH_COLOUR) for m in minima
         ]
         self._lines.draw_groups("patches", outlines, PATCH_LINE)
         self._continuum(answer)
         self._show_ball(answer)
-        self._write(minima, ends, text)
+        self._write(minima, ends, text if first else "")
 
-    def _normals(self, minima: Sequence[NearestPair]) -> None:
+    def _normals(self, minima: Sequence[NearestPair], first: int) -> None:
         """From A's point on; pieces of line, as arrows would each be a mesh of its own size."""
         shafts = []
         for number, m in enumerate(minima):
-            length = ARROW * self._size * (1.0 if number == 0 else 0.5)
+            length = ARROW * self._size * (1.0 if number < first else 0.5)
             shafts.append(arrow_of(m.point_a, m.normal, length))
         self._lines.draw_groups("normals", [(each, BOUND_COLOUR) for each in shafts], SHAFT)
 
-    def _continuum(self, answer: SolidProximity) -> None:
-        ends = () if answer.continuum is None else answer.continuum.ends
-        pairs = np.array(ends).reshape(-1, 2, 3)
-        if answer.continuum is not None and answer.continuum.kind == "line" and len(pairs):
+    def _continuum(self, answer: SolidProximity | None) -> None:
+        continuum = None if answer is None else answer.continuum
+        pairs = np.array(() if continuum is None else continuum.ends).reshape(-1, 2, 3)
+        if continuum is not None and continuum.kind == "line" and len(pairs):
             pairs = np.concatenate([pairs, pairs.transpose(1, 0, 2)])
         self._lines.draw_groups("ends", [(pairs, END_COLOUR)], END_LINE)
 
-    def _show_ball(self, answer: SolidProximity) -> None:
+    def _show_ball(self, answer: SolidProximity | None) -> None:
         """The ball inside both, where no place of an overlap is told."""
-        overlap = answer.overlap
-        shown = overlap is not None and not answer.minima and overlap.radius > 0.0
+        overlap = None if answer is None or answer.minima else answer.overlap
+        shown = overlap is not None and overlap.radius > 0.0
         self._ball.visible = shown
         if shown and overlap is not None:
             self._ball.position = tuple(overlap.common_point)
@@ -102,11 +106,11 @@ class MinimaNodes:
 
     def _write(self, minima: Sequence[NearestPair], ends: Array, text: str) -> None:
         middles = ends.mean(axis=1)
-        self._label.visible = bool(len(minima))
+        self._label.visible = bool(text)
         self._label.text = text
-        if len(minima):
+        if text:
             self._label.position = tuple(middles[0])
-        keyed = [k for k in range(1, min(len(minima), LABELLED)) if minima[k].key >= 0]
+        keyed = [k for k in range(bool(text), min(len(minima), LABELLED)) if minima[k].key >= 0]
         while len(self._labels) < len(keyed):
             name = f"/minima/key_{len(self._labels)}"
             self._labels.append(self._scene.add_label(name, "", anchor="top-right"))

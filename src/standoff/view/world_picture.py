@@ -9,16 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.motion import Pose
+from standoff.solids.answer import NearestPair
 from standoff.view.bodies_picture import FIXED_COLOURS, BodiesPicture
 from standoff.view.gap_colours import gap_colours
 from standoff.view.nodes import COLOURS, AnswerNodes, quaternion
 from standoff.view.picture import FIRM, GRIP
 from standoff.view.readout import beside
 from standoff.view.segments import Segments
+from standoff.view.solid_nodes import MOST_DRAWN, MinimaNodes, drawn_minima
+from standoff.view.solid_readout import solid_beside
 from standoff.view.tolerances import SEEN_INTO
 from standoff.view.world_readout import closest_text
 from standoff.world import World, WorldAnswer
-from standoff.world.pair_answer import convex
+from standoff.world.packed import pieces_of
+from standoff.world.pair_answer import PairAnswer
+from standoff.world.shapes import is_solid
 
 Array = NDArray[np.float64]
 
@@ -54,6 +59,9 @@ class WorldPicture(BodiesPicture):
         self._still = world.model.fixed_rows.tolist()
         self._pairs = PairLines(scene)
         self._closest = AnswerNodes(scene, self.size)
+        pieces = (piece for body in world.bodies.values() for piece in pieces_of(body))
+        solid = any(is_solid(piece.body) for piece in pieces)
+        self._minima = MinimaNodes(scene, self.size) if solid else None
         self.handle: Any = None
         self._held_row = -1
 
@@ -101,16 +109,33 @@ class WorldPicture(BodiesPicture):
         self._show_glass(answer)
         self._pairs.show(answer, end)
         closest = answer.closest
-        if closest is None:
+        if self._minima is not None:
+            self._show_minima(answer, self._minima)
+        if closest is None or not isinstance(closest, PairAnswer):
             nothing = np.full(3, np.nan)
             self._closest.show((nothing, nothing), nothing, "")
             return
-        text = f"{closest_text(convex(closest))}: {beside(closest, self._unit, self.size)}"
+        text = f"{closest_text(closest)}: {beside(closest, self._unit, self.size)}"
         deep = self._seen_into(
             closest.distance, answer.pairs.bodies[answer.pairs.distance.argmin()]
         )
         points = closest.point_a, closest.point_b
         self._closest.show(points, closest.normal, text, deep=bool(deep))
+
+    def _show_minima(self, answer: WorldAnswer, nodes: MinimaNodes) -> None:
+        """All minima and places of pairs with a solid."""
+        closest = answer.closest
+        first = None if isinstance(closest, PairAnswer) else closest
+        others: list[NearestPair] = []
+        for pair in answer.pairs:
+            if not isinstance(pair, PairAnswer) and (first is None or pair.names != first.names):
+                others += drawn_minima(pair)
+            if len(others) >= MOST_DRAWN:
+                break
+        text = ""
+        if first is not None:
+            text = f"{closest_text(first)}: {solid_beside(first, self._unit, self.size)}"
+        nodes.show(first, text, others)
 
     def _seen_into(self, distance: Any, bodies: Any) -> Any:
         return -distance > SEEN_INTO * self.sizes[bodies].min(axis=-1)

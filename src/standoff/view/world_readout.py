@@ -8,18 +8,19 @@ import numpy as np
 
 from standoff.clearance.report import at_least
 from standoff.view.readout import COLOURS, MARK, ROW, TABLE, length, verdict
+from standoff.view.solid_readout import solid_verdict
 from standoff.wording import counted, printable, short_name
 from standoff.world import PairAnswer, WorldAnswer
-from standoff.world.pair_answer import convex
+from standoff.world.solid_answer import SolidPairAnswer
 
 
-def named(pair: PairAnswer) -> str:
+def named(pair: PairAnswer | SolidPairAnswer) -> str:
     """Return the names of a pair and of its nearest pieces."""
     each = zip(pair.names, pair.pieces, strict=True)
     return " – ".join(": ".join(printable(word) for word in words if word) for words in each)
 
 
-def closest_text(pair: PairAnswer) -> str:
+def closest_text(pair: PairAnswer | SolidPairAnswer) -> str:
     """Return the names of a pair's bodies, short enough to stand in the scene."""
     return " – ".join(short_name(name) for name in pair.names)
 
@@ -46,9 +47,14 @@ def world_readout(answer: WorldAnswer, unit: str, size: float, pairs: int | None
             (MARK.format(COLOURS[0]) + "distance", "distance", "not known"),
         ]
     else:
-        said = f"{closest_text(convex(closest))}: {verdict(closest, unit, size)}"
+        told = (
+            verdict(closest, unit, size)
+            if isinstance(closest, PairAnswer)
+            else solid_verdict(closest, closest.names, unit, size)
+        )
+        said = f"{closest_text(closest)}: {told}"
         rows = [
-            ("closest", "closest", named(convex(closest))),
+            ("closest", "closest", named(closest)),
             (MARK.format(COLOURS[0]) + "distance", "distance", length(closest.distance, unit)),
             ("lower bound", "bound", length(closest.lower_bound, unit)),
         ]
