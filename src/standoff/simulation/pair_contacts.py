@@ -218,27 +218,26 @@ def pair_contacts(
         As in `ContactRows`, of this state.
     """
     told = answers(system, row[None])[0]
-    near = [_near(system, pair, out) for pair, out in enumerate(told)]
+    known = (told[:, T.STATUS] != Status.FAR.value) & np.isfinite(told[:, T.DISTANCE])
+    near = {k: _near(system, k, told[k]) for k in np.flatnonzero(known).tolist()}
     numbers = {int(k) for k in (*spots[:, K.U_PAIR], *places[:, 0])}
-    numbers |= {pair for pair, place in enumerate(near) if place is not None}
+    numbers |= {pair for pair, place in near.items() if place is not None}
     found = []
     for pair in sorted(numbers):
         own = places[places[:, 0] == pair]
-        only = near[pair]
-        known = tuple(place_of(each[1:]) for each in own) if only is None else (only,)
+        only = near.get(pair)
+        found_places = tuple(place_of(each[1:]) for each in own) if only is None else (only,)
         pushing = tuple(_spot_of(each) for each in spots[spots[:, K.U_PAIR] == pair])
         out = told[pair]
         status = Status(int(out[T.STATUS]))
-        found.append(PairContact(pair, status, float(out[T.DISTANCE]), known, pushing))
+        found.append(PairContact(pair, status, float(out[T.DISTANCE]), found_places, pushing))
     return tuple(found)
 
 
 def _near(system: System, pair: int, out: Array) -> ContactPlace | None:
     """The witness points of convex bodies as a place, where they are as near as places of solids
     are looked for."""
-    if system.of_solids[pair] or int(out[T.STATUS]) == Status.FAR.value:
-        return None
-    if not out[T.DISTANCE] <= LOOKED_FOR * system.depth(pair):
+    if system.of_solids[pair] or not out[T.DISTANCE] <= LOOKED_FOR * system.depth(pair):
         return None
     normal, a, b = (out[o : o + 3] for o in (T.NORMAL, T.POINT_A, T.POINT_B))
     return ContactPlace(ONLY, True, float(out[T.DISTANCE]), normal, a, b)
