@@ -108,6 +108,29 @@ def test_through_a_ring(off: float, proven: bool) -> None:
     assert np.isclose(path.witness.upper_bound, path.witness.distance, atol=1e-9)
 
 
+def test_what_is_apart_along_one_normal_meets_across_it() -> None:
+    """A ball beside the wall of a ring, which slides along the wall and meets the next: along the
+    normal in the middle nothing moves."""
+    place = np.eye(4)
+    place[0, 3] = 0.1
+    made = robot_of(
+        [2],
+        [-1],
+        [place],
+        [[0.0, 1.0, 0.0]],
+        [(0, so.shapes.sphere(0.1), np.eye(4))],
+        fixed={"ring": (HOOP, np.eye(4))},
+    )
+    # 0.25 - 0.1 from the axis the ball meets the tube
+    meets = np.sqrt(0.15**2 - 0.1**2)
+    box = made.certify_box([-0.2], [0.2], 1e-4, whole=True)
+    assert box.verdict is Verdict.VIOLATED
+    assert 0.99 * meets / 0.2 < box.free < meets / 0.2
+    path = made.certify([[-0.2], [-0.1], [0.0], [0.1], [0.2]], 1e-4)
+    assert (path.verdict, path.time) == (Verdict.VIOLATED, 0.0)
+    assert made.certify([[-0.1], [-0.05], [0.0], [0.05], [0.1]], 1e-4)
+
+
 def test_links_of_a_chain_come_apart_only_through_each_other() -> None:
     """Interlocked rings, moved within their play, and pulled until they meet."""
     across = turn([np.pi / 2, 0.0, 0.0])
@@ -166,6 +189,8 @@ def test_inside_a_solids_material_is_below_the_wall() -> None:
     assert -np.inf < one.lower_bound == rows.lower_bound[0] <= -0.62
     assert np.allclose(one.normal, [1.0, 0.0, 0.0])
     assert rows.clearance == -np.inf
+    near = made.distances(q, within=0.1)
+    assert near.distance[0] == pytest.approx(-0.42, abs=1e-9)
     ahead, behind = (made.distances(q + s * h * v).distance[0] for s in (1.0, -1.0))
     assert rows.jacobian[0] @ v == pytest.approx((ahead - behind) / (2.0 * h), abs=1e-8)
     proof = made.certify([q, q + 0.01], 0.0)
