@@ -2,9 +2,10 @@
 
 Run from the repository's root:
 
-- ``python -m benchmarks.certify paths --paths 1000 [--samples 100000] [--seed 1]``: random trees of
-  joints on random straight paths, each judged by many samples of an oracle with other kinematics
-  and closed-form distances (``tests/robots/path_oracle.py``); half of them graze the clearance.
+- ``python -m benchmarks.certify paths --paths 1000 [--samples 100000] [--seed 1] [--rings 2]``:
+  random trees of joints on random straight paths, each judged by many samples of an oracle with
+  other kinematics and closed-form distances (``tests/robots/path_oracle.py``); half of them graze
+  the clearance. With rings, among so many solids that need not be convex.
 - ``python -m benchmarks.certify arms --paths 20 [--samples 10000] [--seed 1]``: the same for real
   arms among a pole, a ball and a crate, judged by Pinocchio with Coal, and by MuJoCo
   (``tests/robots/real_arms.py``).
@@ -46,7 +47,7 @@ ORACLE = 1e-11
 """Accuracy of the oracle's distances [length]."""
 
 
-def paths(count: int, samples: int, seed: int) -> int:
+def paths(count: int, samples: int, seed: int, rings: int) -> int:
     """Judge many proofs; the number of wrong ones."""
     from robots.path_oracle import drawn_judged, least_distances
     from standoff.robots.proof import Verdict
@@ -57,7 +58,7 @@ def paths(count: int, samples: int, seed: int) -> int:
     wrong, taken, steps, margins = 0, [], [], []
     done = 0
     while done < count:
-        judged = drawn_judged(rng, int(rng.integers(1, 8)))
+        judged = drawn_judged(rng, int(rng.integers(1, 8)), rings=rings)
         points = rng.uniform(-1.0, 1.0, judged.robot.nq)
         points = points + rng.uniform(-0.6, 0.6, (int(rng.integers(2, 6)), judged.robot.nq))
         times = np.linspace(0.0, 1.0, samples)
@@ -282,9 +283,11 @@ def main() -> int:
     parser.add_argument("--paths", type=int, default=1000)
     parser.add_argument("--samples", type=int, default=None)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rings", type=int, default=0)
     given = parser.parse_args()
     if given.what == "paths":
-        return 1 if paths(given.paths, given.samples or 100_000, given.seed) else 0
+        found = paths(given.paths, given.samples or 100_000, given.seed, given.rings)
+        return 1 if found else 0
     if given.what == "arms":
         return 1 if arms(given.paths, given.samples or 10_000, given.seed) else 0
     if given.what == "speed":

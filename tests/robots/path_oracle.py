@@ -1,29 +1,41 @@
 """Distances along joint paths by another way: kinematics with SciPy's rotations at many times at
-once, and closed forms for spheres, capsules and half-spaces.
+once, and closed forms for spheres, capsules, half-spaces, and for rings beside spheres.
 
 Nothing of it is the library's but the joints and the sizes of the bodies.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from families.solid_shapes import ring
 from robots.trees import TreeRobot, drawn_axis, drawn_pose, robot_of
 
 
+@lru_cache
+def made_ring(circle: float, radius: float) -> Any:
+    """A ring as a solid: it is made in seconds."""
+    return ring(circle, radius)
+
+
 class Simple(NamedTuple):
-    """A segment with a radius; of half-length 0 a point; or a half-space below a plane."""
+    """A segment with a radius; of half-length 0 a point; or a half-space below a plane; or a circle
+    about z with a radius around it, a torus."""
 
     radius: float
     half: float = 0.0
     normal: Any = None
     offset: float = 0.0
+    circle: float = 0.0
 
-    def body(self) -> so.Body:
+    def body(self) -> Any:
+        if self.circle:
+            return made_ring(self.circle, self.radius)
         if self.normal is not None:
             return so.shapes.halfspace(self.normal, self.offset)
         if self.half == 0.0:
@@ -44,12 +56,21 @@ class Judged(NamedTuple):
     pairs: list[tuple[int, int]]
 
 
-def drawn_judged(rng: np.random.Generator, joints: int, spread: float = 0.35) -> Judged:
-    """A random tree of hinges and slides with spheres and capsules."""
+def drawn_judged(
+    rng: np.random.Generator, joints: int, spread: float = 0.35, rings: int = 0
+) -> Judged:
+    """A random tree of hinges and slides with spheres and capsules; with rings as solids there are
+    no capsules, and each ring is a piece of the world that some of the spheres may go through."""
     kinds = [int(k) for k in rng.choice([1, 1, 1, 2], joints)]
     parents = [int(rng.integers(-1, j)) if rng.random() < 0.25 else j - 1 for j in range(joints)]
     geoms = [(j, drawn_simple(rng), drawn_pose(rng, 0.2)) for j in range(joints)]
     fixed = [(drawn_simple(rng), drawn_pose(rng, 0.9)) for _ in range(4)]
+    if rings:
+        geoms = [(j, Simple(rng.uniform(0.02, 0.07)), pose) for j, _, pose in geoms]
+        fixed = [
+            (Simple(0.03, circle=float(rng.choice([0.15, 0.35]))), drawn_pose(rng, 0.5))
+            for _ in range(rings)
+        ]
     if rng.random() < 0.5:
         fixed.append((Simple(0.0, 0.0, [0.0, 0.0, 1.0], -rng.uniform(0.3, 1.0)), np.eye(4)))
     names = [f"g{k}" for k in range(joints)] + [f"f{k}" for k in range(len(fixed))]
@@ -96,7 +117,7 @@ def least_distances(judged: Judged, q: np.ndarray) -> np.ndarray:
         arm = (turn @ pose[:3, 2]) * simple.half
         ends.append((centre - arm, centre + arm))
     for simple, pose in judged.fixed:
-        arm = pose[:3, 2] * simple.half
+        arm = pose[:3, 2] * (simple.half or simple.circle)
         ends.append(tuple(np.tile(pose[:3, 3] + s * arm, (m, 1)) for s in (-1.0, 1.0)))
     simples = [simple for _, simple, _ in judged.geoms] + [simple for simple, _ in judged.fixed]
     return np.stack(
@@ -105,12 +126,23 @@ def least_distances(judged: Judged, q: np.ndarray) -> np.ndarray:
 
 
 def _between(a: Any, of_a: Simple, b: Any, of_b: Simple) -> np.ndarray:
-    if of_a.normal is not None:
+    if of_a.normal is not None or of_a.circle:
         a, of_a, b, of_b = b, of_b, a, of_a
+    if of_b.circle:
+        return _to_ring(a[0], *b, of_b) - of_a.radius
     if of_b.normal is not None:
         heights = [end @ np.asarray(of_b.normal) - of_b.offset for end in a]
         return np.minimum(*heights) - of_a.radius
     return segments_apart(*a, *b) - of_a.radius - of_b.radius
+
+
+def _to_ring(p: Any, low: Any, high: Any, ring: Simple) -> np.ndarray:
+    """(m,) signed distances of points from a torus, about the line from low to high."""
+    middle, axis = 0.5 * (low + high), high - low
+    axis = axis / np.linalg.norm(axis, axis=1)[:, None]
+    along = np.einsum("mi,mi->m", p - middle, axis)
+    across = np.linalg.norm(p - middle - along[:, None] * axis, axis=1)
+    return np.hypot(across - ring.circle, along) - ring.radius
 
 
 def segments_apart(a0: Any, a1: Any, b0: Any, b1: Any) -> np.ndarray:

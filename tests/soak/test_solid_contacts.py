@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from standoff.solids import distance
 from standoff.tracking.status import Status
 from standoff_studies.soak.solid_contacts import (
+    BLOCK,
     LOOKED_FOR,
     STRETCH,
     compared,
@@ -17,6 +19,8 @@ from standoff_studies.soak.solid_contacts import (
     judged_fall,
 )
 from standoff_studies.soak.solid_pairs import made
+from standoff_studies.soak.solid_parts import MAKERS
+from standoff_studies.soak.solid_poses import pairs_of
 
 
 def test_a_fall_is_judged() -> None:
@@ -53,3 +57,13 @@ def test_planted_faults_are_seen(rng: np.random.Generator) -> None:
     assert compared(missed, cold, below, 1e-9)[0].lost == sound.minima > 0
     elsewhere = replace(cold, minima=(cold.minima[0]._replace(distance=-0.5 * below),))
     assert compared(contact, elsewhere, below, 1e-9)[0].lost == 1
+
+
+@pytest.mark.parametrize("block", [108, 246])
+def test_falls_whose_normals_were_once_lost(block: int) -> None:
+    """Common normals above 0 that rested for half of their distance had left their leaves, unseen,
+    when the solids met."""
+    verdict, lines = judged_fall(block, 2, pairs_of(list(MAKERS)), BLOCK)
+    assert lines == []
+    assert verdict.minima > 10
+    assert verdict.wrong == verdict.lost == verdict.jumps == verdict.uncertified == 0

@@ -307,9 +307,6 @@ def test_all_local_minima_of_a_ball_in_a_corner() -> None:
     assert {pair.feature_b for pair in found.minima} == {Feature("vertex", 0)}
 
 
-@pytest.mark.xfail(
-    reason="the set is told as an arc: a fault since leaves are 0.3 of the size long"
-)
 def test_a_rounded_box_over_a_plate_has_one_set_of_nearest_pairs() -> None:
     plate = Solid(so.shapes.box((8.0, 8.0, 1.0)))
     found = so.solids.distance(plate, shape("box"), STILL, at(0.3, 0.2, 2.5), minima=0.9)

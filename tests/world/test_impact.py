@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from draws import draws
+from families.solid_shapes import ring
 from standoff.impact import ImpactStatus
 from standoff.motion import ConstantTwist, Offset, PoseSamples, Screw
 from standoff.motion.moving import moving
@@ -46,6 +47,31 @@ def test_the_first_of_several_impacts_with_its_pieces() -> None:
     assert found.searched == 1
     early = world.time_of_impact(paths, 20.0, clearance=1.0)
     assert early.time == pytest.approx(4.0, abs=1e-8)
+
+
+def test_among_solids_that_are_not_convex() -> None:
+    """One ball goes through a ring, whose hull it meets; the next one comes to the ring itself."""
+    ball, hoop = so.shapes.sphere(0.1), ring(0.3, 0.05)
+    world = so.World(
+        {"ring": hoop, "through": ball, "wide": ball},
+        fixed={"ring": at(0.0)},
+        parents={"wide": "through"},
+    )
+
+    def up(x: float, z: float) -> ConstantTwist:
+        pose = at(x)
+        pose[2, 3] = z
+        return ConstantTwist(pose, ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0]))
+
+    paths = {"through": up(0.0, -1.0), "wide": up(0.2, -3.0)}
+    found = world.time_of_impact(paths, 6.0)
+    # 0.1 from the circle in its plane, and 0.15 in all
+    true = 3.0 - np.sqrt(0.15**2 - 0.1**2)
+    assert found.status is ImpactStatus.IMPACT
+    assert set(found.names) == {"ring", "wide"}
+    assert found.time <= true
+    assert found.time == pytest.approx(true, abs=1e-8)
+    assert world.time_of_impact(paths, 2.5).status is ImpactStatus.NO_IMPACT
 
 
 def test_no_impact_and_bad_paths() -> None:

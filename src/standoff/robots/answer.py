@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,9 @@ from standoff.read_only import KeepsReadOnly
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 from standoff.world.pair_answer import PairAnswer
+
+if TYPE_CHECKING:
+    from standoff.world.solid_answer import SolidPairAnswer
 
 Array = NDArray[np.float64]
 
@@ -32,8 +35,20 @@ class Flag(NamedTuple):
     smooth: bool
 
 
-class Flagged(Protocol):
-    """Rows that can tell whether each is a derivative."""
+class Signed(Protocol):
+    """Rows of signed distances, which can tell whether each has a derivative."""
+
+    @property
+    def distance(self) -> Array: ...
+
+    @property
+    def lower_bound(self) -> Array: ...
+
+    @property
+    def upper_bound(self) -> Array: ...
+
+    @property
+    def normal(self) -> Array: ...
 
     def flag(self, k: int) -> Flag: ...
 
@@ -47,7 +62,7 @@ class RobotAnswer(KeepsReadOnly):
         Of the geometries, and of the links that carry them: A and B. The link of an obstacle is the
         obstacle.
     distance, lower_bound, upper_bound : float
-        Signed, length; as of a `Proximity`.
+        Signed, length; as of `RobotRows`.
     point_a, point_b, normal : (3,) arrays
         World axes; the normal points from A to B.
     gradient : (nv,) array
@@ -64,7 +79,7 @@ class RobotAnswer(KeepsReadOnly):
     certified : bool
     clearance : float
         A proven lower bound of the distances of *all* pairs that are watched, length.
-    pair : PairAnswer
+    pair : PairAnswer or SolidPairAnswer
         All else that is known of the pair.
     """
 
@@ -72,11 +87,11 @@ class RobotAnswer(KeepsReadOnly):
 
     def __init__(
         self,
-        pair: PairAnswer,
+        pair: PairAnswer | SolidPairAnswer,
         links: tuple[str, str],
         gradient: Array,
         clearance: float,
-        row: tuple[Flagged, int],
+        row: tuple[Signed, int],
     ) -> None:
         self.pair, self.names, self.links = pair, pair.names, links
         self.gradient, self.clearance = gradient, clearance
@@ -84,15 +99,15 @@ class RobotAnswer(KeepsReadOnly):
 
     @property
     def distance(self) -> float:
-        return self.pair.distance
+        return float(self._rows.distance[self._k])
 
     @property
     def lower_bound(self) -> float:
-        return self.pair.lower_bound
+        return float(self._rows.lower_bound[self._k])
 
     @property
     def upper_bound(self) -> float:
-        return self.pair.upper_bound
+        return float(self._rows.upper_bound[self._k])
 
     @property
     def point_a(self) -> Array:
@@ -104,7 +119,8 @@ class RobotAnswer(KeepsReadOnly):
 
     @property
     def normal(self) -> Array:
-        return self.pair.normal
+        normal: Array = self._rows.normal[self._k]
+        return normal
 
     @property
     def status(self) -> Status:
@@ -129,7 +145,9 @@ class RobotAnswer(KeepsReadOnly):
     def as_dict(self) -> dict[str, Any]:
         """Plain data: that of the pair, with the links and the gradient."""
         more = {"links": list(self.links), "gradient": self.gradient.tolist()}
-        return self.pair.as_dict() | more | {"clearance": self.clearance}
+        signed = {name: getattr(self, name) for name in ("distance", "lower_bound", "upper_bound")}
+        signed |= {"normal": self.normal.tolist(), "clearance": self.clearance}
+        return self.pair.as_dict() | more | signed
 
     def __repr__(self) -> str:
         a, b = self.names

@@ -215,7 +215,7 @@ class _Search:
             if len(asked):
                 best = int(asked[np.argmin(apart.upper[asked])])
                 own = own._replace(
-                    least=Apart(*(each[best : best + 1] for each in apart)),
+                    least=Apart._make(each[best : best + 1] for each in apart),
                     nearest=int(pairs[ask[best]]),
                 )
             found.append(self._part(own, pairs[mine], bound[mine], middle.reaches, mine))

@@ -239,7 +239,7 @@ class _Search:
         self, now: Intervals, frames: Frames, ends: tuple[Ints, Ints], middle: Middle
     ) -> Array:
         """How far below their chord the separations may sag: S of ``standoff.impact.chord``, seen
-        from the link where it is least."""
+        from the link where it is least; infinite of solids, which no plane need part."""
         rates, gains = self._rates(now, middle)
         if gains is None:
             return np.full(len(now.pairs), np.inf)
@@ -264,7 +264,7 @@ class _Search:
             total += np.einsum("kj,kj->k", np.abs(change), middle.half[side])
         span = now.last - now.first
         found: Array = total + 0.5 * span * span * cut.bound + self.doubt
-        return found
+        return np.where(self.sight.solid[now.pairs], np.inf, found)
 
     # --- times --------------------------------------------------------------------------------
 
@@ -321,7 +321,7 @@ class _Search:
             return
         k = int(bad[np.argmin(times[bad])])
         if self.violation is None or times[k] < self.violation[0]:
-            one = Apart(*(each[k : k + 1] for each in apart))
+            one = Apart._make(each[k : k + 1] for each in apart)
             self.violation = float(times[k]), int(pairs[k]), one
 
     def _split(self, left: Intervals) -> Intervals:

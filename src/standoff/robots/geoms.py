@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.body import Body
 from standoff.world import Compound
+from standoff.world.shapes import Shape
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,14 +30,14 @@ class Geoms(NamedTuple):
         The joint, of `Joints`, in whose moved frame each is fixed; -1 for the world.
     placements : (n, 4, 4) array
         The body's frame in that frame.
-    bodies : tuple of Body or Compound
+    bodies : tuple of Body, Solid or Compound
     """
 
     names: tuple[str, ...]
     links: tuple[str, ...]
     joints: Ints
     placements: Array
-    bodies: tuple[Body | Compound, ...]
+    bodies: tuple[Shape | Compound, ...]
 
     @property
     def moving(self) -> Ints:

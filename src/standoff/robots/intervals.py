@@ -50,7 +50,7 @@ def lowest(before: Array, after: Array, sag: Array) -> Array:
     least = np.minimum(before, after)
     with np.errstate(invalid="ignore", divide="ignore"):
         dip = before - (sag + before - after) ** 2 / (4.0 * sag)
-    found = np.where(sag > np.abs(before - after), dip, least)
+        found = np.where(sag > np.abs(before - after), dip, least)
     return np.where((least > 0.0) & np.isfinite(sag), found, -np.inf)
 
 

@@ -7,18 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose
 from standoff.robots.geoms import WORLD, Geoms
 from standoff.world import Compound
 from standoff.world.pieces import name_of
-from standoff.world.shapes import as_shape
-from standoff.world.solid_pairs import refuse_solids
+from standoff.world.shapes import Shape, as_shape
 
-Obstacles = dict[str, tuple[Body | Compound, Pose]]
-"""By name: the body, and its pose in the world."""
+Obstacles = dict[str, tuple[Shape | Compound, Pose]]
+"""By name: the body or solid, and its pose in the world."""
 
 
 def read_obstacles(given: Any, taken: Collection[str]) -> Obstacles:
@@ -45,16 +43,16 @@ def read_obstacles(given: Any, taken: Collection[str]) -> Obstacles:
                 name,
             )
         body, pose = what if isinstance(what, tuple) and len(what) == 2 else (what, None)
-        if not isinstance(body, Body | Compound) and as_shape(body) is None:
+        shape = body if isinstance(body, Compound) else as_shape(body)
+        if shape is None:
             raise StandoffTypeError(
-                f"The obstacle {name!r} is {shown(what)}: give (body, pose), with a Body or a "
-                "Compound.",
+                f"The obstacle {name!r} is {shown(what)}: give (body, pose), with a Body, a Solid "
+                "or a Compound.",
                 "obstacles",
                 what,
             )
-        refuse_solids({name: body}, "A robot's world", "give its convex pieces, as a Compound")
         try:
-            found[name] = body, Pose.identity() if pose is None else Pose.of(pose)
+            found[name] = shape, Pose.identity() if pose is None else Pose.of(pose)
         except StandoffError as error:
             raise type(error)(f"The obstacle {name!r}: {error}", "obstacles", what) from error
     return found

@@ -16,6 +16,7 @@ from standoff.tracking.derivatives import Smoothness, flagged_gradient
 from standoff.world import World
 from standoff.world.answer import WorldAnswer
 from standoff.world.pair_answer import PairAnswer, convex
+from standoff.world.solid_pairs import refuse_solids
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,11 @@ class PairsByQ:
             raise StandoffError(
                 f"pairs = {names}: give pairs of names in robot.geoms.names.", "pairs", names
             )
+        refuse_solids(
+            {name: known[name] for name in used},
+            "A function of CasADi",
+            "give its convex pieces, as a Compound",
+        )
         still = dict(zip(robot.geoms.names, robot.geoms.joints < 0, strict=True))
         at = {name: k for k, name in enumerate(robot.geoms.names)}
         self.robot, self.names, self.undefined = robot, names, undefined

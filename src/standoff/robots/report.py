@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from typing import NamedTuple
 
-from standoff.bodies.body import Body
 from standoff.robots.obstacles import Obstacles
 from standoff.wording import counted
 from standoff.world import Compound
+from standoff.world.shapes import Shape
 
 EXACT, HULL, GIVEN, SKIPPED, UNSEEN = "exact", "hull", "given", "skipped", "does not collide"
 """What may become of a geometry: its exact shape, the hull of its mesh, a body that the user gave,
@@ -83,8 +83,8 @@ def of_obstacles(obstacles: Obstacles) -> tuple[GeomReport, ...]:
     )
 
 
-def _kind(body: Body | Compound) -> str:
-    return "compound" if isinstance(body, Compound) else body.name
+def _kind(body: Shape | Compound) -> str:
+    return "compound" if isinstance(body, Compound) else str(body.name)
 
 
 def _gap(geom: GeomReport) -> str:

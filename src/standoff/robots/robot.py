@@ -83,7 +83,7 @@ class Robot(RobotModel):
         ----------
         model : mujoco.MjModel, str or path
             A model, or the path of an MJCF or URDF file that MuJoCo reads.
-        meshes : None, "hull" or mapping of str to ("hull", Body or Compound)
+        meshes : None, "hull" or mapping of str to ("hull", Body, Solid or Compound)
             What stands for meshes: their hulls, or what is given by the geometries' names, in the
             frame of the geometry. Without it a mesh is refused.
         skip : list of str
@@ -91,7 +91,7 @@ class Robot(RobotModel):
         within : float, optional
             The horizon, length: of pairs farther apart only that is proven. All distances if not
             given.
-        obstacles : mapping of str to (Body or Compound, pose), optional
+        obstacles : mapping of str to (Body, Solid or Compound, pose), optional
             As for ``with_obstacles``.
 
         Returns
@@ -207,7 +207,7 @@ class Robot(RobotModel):
 
         Parameters
         ----------
-        obstacles : mapping of str to (Body or Compound, pose), or to Body
+        obstacles : mapping of str to (Body, Solid or Compound, pose), or to Body
             World poses; a body alone is where its own frame is the world's. Each is a pair with
             every geometry that moves.
 

@@ -40,7 +40,9 @@ class RobotModel(KeepsReadOnly):
         self._horizons = Horizons(self.geoms, loaded.pairs, own, self.within)
         support = np.zeros((len(self.geoms.names), self.kinematics.support.shape[1]))
         support[self.geoms.moving] = self.kinematics.support
-        self._mounted = Mounted(self.geoms.links, support, self.kinematics.fold)
+        self._mounted = Mounted(
+            self.geoms.links, support, self.kinematics.fold, self._horizons.size()
+        )
 
     @property
     def nq(self) -> int:

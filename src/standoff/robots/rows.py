@@ -14,10 +14,10 @@ from standoff.robots.gradients import rows_by_velocity
 from standoff.robots.kinematics import Motion
 from standoff.robots.tolerances import TURN_LOST
 from standoff.shown_names import hides
-from standoff.tracking.derivatives import Smoothness, flagged_gradient
+from standoff.tracking.derivatives import Smoothness
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
-from standoff.world.pair_answer import convex
+from standoff.world.pair_arrays import derived
 
 Array = NDArray[np.float64]
 
@@ -31,11 +31,14 @@ class Mounted(NamedTuple):
     support : (n, ns) array
         1.0 where a screw moves a body.
     fold : (ns, nv) array or None
+    size : float
+        Of all bounded bodies together, length.
     """
 
     links: tuple[str, ...]
     support: Array
     fold: Array | None
+    size: float
 
 
 @hides("motion", "mounted", "flag")
@@ -54,9 +57,12 @@ class RobotRows(KeepsReadOnly):
     bodies : (k, 2) array of int
         Numbers of the geometries, as in ``robot.geoms``.
     distance, lower_bound, upper_bound : (k,) arrays
-        Signed, length.
+        Signed, length. Of a body that is inside a solid's material, with status CONTAINED, less
+        the wall between the two boundaries: it is deeper than that, and the lower bound is the
+        size of all bodies.
     point_a, point_b, normal : (k, 3) arrays
-        World axes; the normal points from A to B.
+        World axes; the normal points from A to B. Moving B by -distance * normal parts the two, or
+        with status CONTAINED brings it to the wall.
     jacobian : (k, nv) array
         Of the distances by the robot's velocity. A row always has numbers: where its distance has
         no derivative they are those of these witness points, and `smooth` is False.
@@ -104,15 +110,27 @@ class RobotRows(KeepsReadOnly):
 
     @property
     def distance(self) -> Array:
-        return self._pairs.distance
+        return self._signed(self._pairs.distance)
 
     @property
     def lower_bound(self) -> Array:
-        return self._pairs.lower_bound
+        bounds, inside = self._pairs.lower_bound, self._pairs.inside
+        return np.where(inside, -self.mounted.size, bounds) if inside.any() else bounds
 
     @property
     def upper_bound(self) -> Array:
-        return self._pairs.upper_bound
+        inside = self._pairs.inside
+        if not inside.any():
+            return self._pairs.upper_bound
+        return np.where(inside, -self._pairs.lower_bound, self._pairs.upper_bound)
+
+    def _signed(self, column: Array) -> Array:
+        """Numbers (k, ...) of walls turned round, of bodies that are inside another."""
+        inside = self._pairs.inside
+        if not inside.any():
+            return column
+        signs = np.where(inside, -1.0, 1.0).reshape(-1, *(1,) * (column.ndim - 1))
+        return np.asarray(signs * column)
 
     @property
     def point_a(self) -> Array:
@@ -124,7 +142,7 @@ class RobotRows(KeepsReadOnly):
 
     @property
     def normal(self) -> Array:
-        return self._pairs.normal
+        return self._signed(self._pairs.normal)
 
     @property
     def status(self) -> NDArray[np.object_]:
@@ -153,8 +171,7 @@ class RobotRows(KeepsReadOnly):
     def flag(self, k: int) -> Flag:
         """Whether row k is the derivative of its distance."""
         if k not in self._flags:
-            smoothness, reason, gradient = flagged_gradient(convex(self._pairs[k]))
-            smooth = smoothness in (Smoothness.SMOOTH, Smoothness.ONE_SIDED)
+            smoothness, reason, gradient, smooth = derived(self._pairs[k])
             if smoothness is Smoothness.PARTIAL:
                 # of a pair that is moved alike, its turns too are no change
                 turns = self.motion.screws[3:] * self._signs[k]
@@ -183,7 +200,7 @@ class RobotRows(KeepsReadOnly):
 
     def __getitem__(self, k: int) -> RobotAnswer:
         k = range(len(self))[k]
-        pair, bodies = convex(self._pairs[k]), self.bodies[k].tolist()
+        pair, bodies = self._pairs[k], self.bodies[k].tolist()
         links = self.mounted.links[bodies[0]], self.mounted.links[bodies[1]]
         return RobotAnswer(pair, links, self.jacobian[k], self.clearance, (self, k))
 

@@ -18,7 +18,7 @@ from standoff.robots.geoms import Geoms
 from standoff.robots.hull_gap import hull_gap
 from standoff.robots.report import EXACT, GIVEN, HULL, SKIPPED, UNSEEN, GeomReport
 from standoff.world import Compound
-from standoff.world.solid_pairs import refuse_solids
+from standoff.world.shapes import Shape, as_shape
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -119,7 +119,7 @@ def made_geoms(sources: Sequence[Source], meshes: Meshes, skip: Sequence[str], w
     sources = _with_own_names(sources)
     left_out = _skipped(sources, skip)
     given = _given_meshes(sources, meshes)
-    kept: list[tuple[int, Body | Compound, Array]] = []
+    kept: list[tuple[int, Shape | Compound, Array]] = []
     reports: list[GeomReport] = []
     refused: list[tuple[Source, str]] = []
     for k, source in enumerate(sources):
@@ -152,11 +152,11 @@ def made_geoms(sources: Sequence[Source], meshes: Meshes, skip: Sequence[str], w
     return Made(geoms, {k: n for n, (k, _, _) in enumerate(kept)}, tuple(reports))
 
 
-def _made(source: Source, given: Mapping[str, Any]) -> tuple[Body | Compound, Array, GeomReport]:
+def _made(source: Source, given: Mapping[str, Any]) -> tuple[Shape | Compound, Array, GeomReport]:
     """The body of one geometry, its placement, and what became of it."""
     name, link, kind = source.name, source.link, source.kind
     choice = given.get(name)
-    if isinstance(choice, Body | Compound):
+    if choice is not None and choice != HULL:
         frame = np.eye(4) if source.file_frame is None else source.file_frame
         return choice, source.placement @ frame, GeomReport(name, link, kind, GIVEN, np.nan)
     if kind in EXACT_KINDS:
@@ -226,11 +226,12 @@ def _given_meshes(sources: Sequence[Source], meshes: Meshes) -> dict[str, Any]:
     if not isinstance(meshes, Mapping):
         raise StandoffTypeError(
             f"meshes = {shown(meshes)}: give None, 'hull', or a mapping of names of geometries to "
-            "'hull', a Body or a Compound.",
+            "'hull', a Body, a Solid or a Compound.",
             "meshes",
             meshes,
         )
     kinds = {source.name: source.kind for source in sources}
+    found: dict[str, Any] = {}
     for name, choice in meshes.items():
         if name not in kinds:
             hint = did_you_mean(str(name), sorted(kinds))
@@ -245,12 +246,12 @@ def _given_meshes(sources: Sequence[Source], meshes: Meshes) -> dict[str, Any]:
                 "meshes",
                 name,
             )
-        if not (isinstance(choice, Body | Compound) or choice == HULL):
+        shape = choice if isinstance(choice, str | Compound) else as_shape(choice)
+        if shape is None or (isinstance(shape, str) and shape != HULL):
             raise StandoffTypeError(
-                f"meshes[{name!r}] is {shown(choice)}: give 'hull', a Body or a Compound.",
+                f"meshes[{name!r}] is {shown(choice)}: give 'hull', a Body, a Solid or a Compound.",
                 "meshes",
                 choice,
             )
-        if choice != HULL:
-            refuse_solids({name: choice}, "A robot", "give its convex pieces, as a Compound")
-    return dict(meshes)
+        found[name] = shape
+    return found

@@ -28,10 +28,11 @@ from standoff.robots.proof import Witness
 from standoff.robots.robot_model import RobotModel
 from standoff.robots.watched import Seen, Watched, watched_of
 from standoff.world import World
-from standoff.world.many_frames import answers_at, pieces_placed
+from standoff.world.many_frames import answers_at, are_solids, pieces_placed
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 class Apart(NamedTuple):
@@ -42,13 +43,17 @@ class Apart(NamedTuple):
     distance, lower, upper : (k,) arrays
         The signed distance and its bounds [length]; nan and infinite of pairs that are not known.
     normals : (k, 3) array
-        From A to B, world: along it the pair is at least ``lower`` apart.
+        From A to B, world; 0 where there is none.
+    along : (k,) array of bool
+        Is the pair at least ``lower`` apart along the normal? Convex pieces and boxes are. Between
+        solids there need be no plane: only their distance is known.
     """
 
     distance: Array
     lower: Array
     upper: Array
     normals: Array
+    along: Bools
 
 
 class Middle(NamedTuple):
@@ -78,6 +83,8 @@ class Sight:
     ----------
     robot : Robot
     watched : Watched
+    solid : (n,) array of bool
+        Is a pair asked as one of solids, which need not be convex?
     configurations, queries : int
         At which the package's kinematics were evaluated, and certified distances taken.
     """
@@ -86,6 +93,7 @@ class Sight:
         self.robot, self.workers = robot, workers
         self.model = robot.world.model
         self.watched = _kept(robot)
+        self.solid: Bools = are_solids(self.model, (self.watched.a, self.watched.b))
         self.configurations = self.queries = 0
 
     @property
@@ -164,7 +172,8 @@ class Sight:
         for seen, half in zip(middle.seen, middle.half, strict=True):
             spread = np.abs(np.einsum("ki,kij->kj", normals, seen.axes))
             lower -= np.einsum("kj,kj->k", spread, half)
-        return Apart(lower, lower, np.full(len(pairs), np.inf), normals)
+        every = np.full(len(pairs), np.inf), normals, np.ones(len(pairs), dtype=bool)
+        return Apart(lower, lower, *every)
 
     def ask(self, pairs: Ints, q: Array, frames: Frames, at: Ints) -> Apart:
         """Certified distances of pairs, each at one of several configurations; the same pair at the
@@ -176,9 +185,9 @@ class Sight:
         pieces = self.watched.a[of_pairs], self.watched.b[of_pairs]
         found = answers_at(self.model, placed, rows, pieces, self.workers)
         self.queries += len(keys)
-        return Apart(
-            found.distance[again], found.lower[again], found.upper[again], found.normal[again]
-        )
+        normals = np.nan_to_num(found.normal)
+        told = found.distance, found.lower, found.upper, normals, ~self.solid[of_pairs]
+        return Apart._make(each[again] for each in told)
 
     def placed(self, q: Array, frames: Frames, k: int) -> Array:
         """Where the pieces are, by the package's own kinematics.
@@ -211,10 +220,10 @@ class Sight:
 
 
 def closing(middle: Middle, apart: Apart) -> Array:
-    """(k,): how much nearer the pieces can come than in the middle, where they are apart along a
-    normal [length]: seen from a link, or along that normal alone."""
+    """(k,): how much nearer the pieces can come than in the middle [length]: seen from a link, or,
+    where they are apart along a normal, along that normal alone."""
     along: Cut = least_way_along(middle.reaches, apart.normals, middle.seen, middle.half)
-    return np.minimum(middle.way, along.bound)
+    return np.where(apart.along, np.minimum(middle.way, along.bound), middle.way)
 
 
 def some_of(middle: Middle, which: Any) -> Middle:

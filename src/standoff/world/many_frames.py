@@ -28,7 +28,7 @@ Ints = NDArray[np.int64]
 
 
 class PieceAnswers(NamedTuple):
-    """What is known of k pairs of pieces.
+    """What is known of k pairs of pieces; points and normals are nan where there are none.
 
     Attributes
     ----------
@@ -84,6 +84,29 @@ def answers_at(
     workers : int
         Threads that share the pairs.
     """
+    solid = are_solids(world, pieces)
+    if not solid.any():
+        return _convex_answers_at(world, placed, frames, pieces, workers)
+    from standoff.world.placed_solids import solid_answers_at
+
+    found = PieceAnswers(*np.empty((3, len(frames))), *np.empty((3, len(frames), 3)))
+    for which, asked in ((solid, solid_answers_at), (~solid, _convex_answers_at)):
+        some = asked(world, placed, frames[which], (pieces[0][which], pieces[1][which]), workers)
+        for whole, part in zip(found, some, strict=True):
+            whole[which] = part
+    return found
+
+
+def are_solids(world: Model, pieces: tuple[Ints, Ints]) -> NDArray[np.bool_]:
+    """(k,): which of some pairs of pieces are asked as solids."""
+    of_pieces = world.solids.bodies[world.search.pieces.owners]
+    found: NDArray[np.bool_] = of_pieces[pieces[0]] | of_pieces[pieces[1]]
+    return found
+
+
+def _convex_answers_at(
+    world: Model, placed: Sequence[Array], frames: Ints, pieces: tuple[Ints, Ints], workers: int
+) -> PieceAnswers:
     n, k = len(world.search.pieces.owners), len(frames)
     if not k:
         return PieceAnswers(*np.zeros((3, 0)), *np.zeros((3, 0, 3)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.answers import proven, statuses
+from standoff.tracking.derivatives import NOT_UNIQUE, Smoothness, flagged_gradient
 from standoff.tracking.status import Status
 from standoff.wording import counted
 from standoff.world.pair_answer import PairAnswer
@@ -47,6 +48,8 @@ class PairArrays(KeepsReadOnly):
     order : (n,) array
         The distances by which the nearest is told: -inf where one body is inside the other's
         material.
+    inside : (n,) array of bool
+        Is one body inside the other's material?
     point_a, point_b, normal : (n, 3) arrays
         As in `Proximity`, in world axes.
     rate : (n,) array
@@ -85,10 +88,10 @@ class PairArrays(KeepsReadOnly):
 
     @property
     def order(self) -> Array:
-        return np.where(self._inside, -np.inf, self.distance)
+        return np.where(self.inside, -np.inf, self.distance)
 
     @property
-    def _inside(self) -> NDArray[np.bool_]:
+    def inside(self) -> NDArray[np.bool_]:
         status = self._all.state.ints[self._rows, W.I_STATUS]
         return np.asarray(status == Status.CONTAINED.value)
 
@@ -96,7 +99,7 @@ class PairArrays(KeepsReadOnly):
     def lower_bound(self) -> Array:
         # what is known of a body inside another's material is of no signed distance
         bounds = self._all.lower_bounds(self._rows)
-        return np.where(self._inside, self._column(LOWER_BOUND), bounds)
+        return np.where(self.inside, self._column(LOWER_BOUND), bounds)
 
     @property
     def upper_bound(self) -> Array:
@@ -139,3 +142,36 @@ class PairArrays(KeepsReadOnly):
 
     def __repr__(self) -> str:
         return f"<PairArrays of {counted(len(self), 'pair')}>"
+
+
+class Derived(NamedTuple):
+    """What is known of a distance's derivative by the motions of the two bodies.
+
+    Attributes
+    ----------
+    smoothness : Smoothness
+    reason : str
+        Why it is not smooth; empty if it is.
+    gradient : (12,) array
+        nan where it is undefined: of PARTIAL ones by turns.
+    both_sides : bool
+        Does the gradient hold on all sides?
+    """
+
+    smoothness: Smoothness
+    reason: str
+    gradient: Array
+    both_sides: bool
+
+
+def derived(answer: PairAnswer | SolidPairAnswer) -> Derived:
+    """Of a pair of convex bodies, or of one with a solid, of which a tie is not smooth."""
+    if isinstance(answer, PairAnswer):
+        smoothness, reason, gradient = flagged_gradient(answer)
+        holds = smoothness in (Smoothness.SMOOTH, Smoothness.ONE_SIDED)
+        return Derived(smoothness, reason, gradient, holds)
+    smooth = answer.smoothness is Smoothness.SMOOTH
+    gradient = answer.gradient_rows.copy()
+    if answer.smoothness is Smoothness.PARTIAL:
+        gradient.reshape(4, 3)[1::2] = np.nan
+    return Derived(answer.smoothness, "" if smooth else NOT_UNIQUE, gradient, smooth)

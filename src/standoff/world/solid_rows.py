@@ -34,6 +34,7 @@ from standoff.world.model import Model
 from standoff.world.moment import Moment
 from standoff.world.pair_answer import gradient_of_bodies
 from standoff.world.pieces import PieceUnion
+from standoff.world.placed_solids import PlacedSolid, placed_solid
 from standoff.world.shapes import slack_of
 from standoff.world.state import PAGE, KeptSolids
 
@@ -110,16 +111,16 @@ class SolidRows:
         """Asked from nothing, or tracked where it was near before; roundoff of placements is in
         its bounds."""
         key, p, q = self.table.ints[k, [W.I_KEY, W.I_A, W.I_B]].tolist()
-        a, b = self._solids(p, q)
-        doubt = self._composed(p) + self._composed(q)
+        (a, pose_a, of_a), (b, pose_b, of_b) = (self._placed(piece) for piece in (p, q))
+        doubt = of_a + of_b
         horizon = float(self.table.known[k, W.C_HORIZON])
         # more than the horizon, so that the bound of what is far is beyond it
         more = doubt + slack_of(a) + slack_of(b) + PROOF_TOLERANCE * size_together(a, b)
         within = None if horizon == math.inf else horizon + more
         if key in self.before.pieces and is_tracked(a, b):
-            found = self._tracked(key, (a, b), (self._pose(p), self._pose(q)))
+            found = self._tracked(key, (a, b), (pose_a, pose_b))
         else:
-            found = distance(a, b, self._pose(p), self._pose(q), within=within)
+            found = distance(a, b, pose_a, pose_b, within=within)
         return replace(
             found,
             lower_bound=found.lower_bound - doubt,
@@ -140,16 +141,8 @@ class SolidRows:
             self._fronts[key] = state.front
         return state.proximity
 
-    def _solids(self, p: int, q: int) -> tuple[Any, Any]:
-        return self.world.solids.asked[p], self.world.solids.asked[q]
-
-    def _composed(self, p: int) -> float:
-        placed = self.world.search.pieces.facts[p, W.F_PLACED] != 0.0
-        return float(self.frame.placed[p, W.P_PAD]) if placed else 0.0
-
-    def _pose(self, p: int) -> Pose:
-        row = self.frame.placed[p]
-        return Pose(row[W.P_ROTATION : W.P_SHIFT].reshape(3, 3), row[W.P_SHIFT : W.P_SHIFT + 3])
+    def _placed(self, p: int) -> PlacedSolid:
+        return placed_solid(self.world, self.frame.placed, p)
 
     def _note(self, k: int, found: SolidProximity) -> None:
         """What an answer says of the signed distance, into the table of pairs."""
@@ -215,7 +208,7 @@ class SolidRows:
 
     def _part(self, k: int) -> OfPieces:
         key, p, q = self.table.ints[k, [W.I_KEY, W.I_A, W.I_B]].tolist()
-        solids = self._solids(p, q)
+        solids = self._placed(p).solid, self._placed(q).solid
         (a, one), (b, other) = self._piece(p), self._piece(q)
         return OfPieces(a, b, (one, other), self._found[key], solids)
 

@@ -72,13 +72,13 @@ def spatial_distance(
     inside = inside_of(pair)
     senses = senses_of(inside)
     proof = pair.provable(PROOF_TOLERANCE * pair.size if tolerance is None else tolerance)
-    # two tolerances more, so that what lies beyond is proven to
-    horizon = np.inf if within is None else within + 2.0 * proof
+    # two tolerances more, so that what lies beyond is proven to; no wall is beyond the horizon
+    horizon = np.inf if within is None or inside else within + 2.0 * proof
     sought = Sought(proof, deadline, horizon, *reach_of_minima(minima, patch))
     found = pair.least(senses, sought)
     if found.met:
         return _meeting(pair, found, sought, senses)
-    if within is not None and found.upper >= horizon and not inside and found.lower >= within:
+    if within is not None and found.upper >= horizon and found.lower >= within:
         return answer_of(pair, replace(found, upper=np.inf), [], Told(Status.FAR))
     if found.upper >= horizon and not found.n_open:
         raise StandoffError(

@@ -15,6 +15,7 @@ from standoff.solids.answer import Continuum
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.tolerances import (
     BENDS_LESS,
     CONTINUUM_LENGTH,
@@ -49,15 +50,46 @@ def continuum_of(
     """The continuum that the nearest place belongs to; None if it is a single one.
 
     It is one if Newton's method finds other pairs at the same distance from other starts in the
-    same pieces.
+    same pieces. Of a surface that ends beside strips and corners, such as a rounded box's, the
+    nearest places may all be at its rim: it is one if there are pairs between them too.
     """
     most = found.upper + found.tolerance
     told: Continuum | None = None
+    every = [(place.point_a, place.point_b) for place in places]
     for place in _likeliest(pair, places)[:TRIED]:
         others = _others(pair, place, most, senses)
+        every += others
         if others and (told is None or told.kind != "surface"):
             told = _described(place, others, places)
+    if told is not None and told.kind == "arc" and _is_filled(pair, every, found.tolerance):
+        return Continuum("surface", _corners(every, _spots(every)))
     return told
+
+
+def _is_filled(pair: PlacedPair, every: Sequence[tuple[Array, Array]], tolerance: float) -> bool:
+    """Are there nearest pairs in a triangle of others: in its middle, and halfway along its sides?
+
+    Where two points are on the boundaries halfway between those of two nearest pairs, they are no
+    farther apart than these.
+    """
+    spots = _spots(every)
+    first, last = _farthest(spots)
+    along = spots[last] - spots[first]
+    off = np.linalg.norm(np.cross(spots - spots[first], along), axis=1)
+    corners = [first, last, int(off.argmax())]
+    weights = (np.ones((4, 3)) - [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) / [
+        [3],
+        [2],
+        [2],
+        [2],
+    ]
+    poses = (pair.ra, pair.pa), (pair.rb, pair.pb)
+    for side, (solid, (turn, shift)) in enumerate(zip((pair.a, pair.b), poses, strict=True)):
+        points = weights @ np.array([every[k][side] for k in corners])
+        told = signed_distances(solid, (points - shift) @ turn)
+        if float(np.abs(told.distance).max()) > tolerance:
+            return False
+    return True
 
 
 def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
@@ -134,9 +166,7 @@ def _described(
         near = np.array([y for _, y in others]) - place.point_b
     sizes = np.linalg.svd(near, compute_uv=False)
     every = [(p.point_a, p.point_b) for p in places] + others
-    spots = np.array([x for x, _ in every])
-    if float(np.ptp(spots, axis=0).max()) <= float(np.ptp([y for _, y in every], axis=0).max()):
-        spots = np.array([y for _, y in every])
+    spots = _spots(every)
     if len(sizes) > 1 and sizes[1] > WIDE * sizes[0]:
         return Continuum("surface", _corners(every, spots))
     straight = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)
@@ -145,10 +175,21 @@ def _described(
     return Continuum("arc", () if _closed(spots) else _ends(every, spots))
 
 
-def _ends(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
+def _spots(every: Sequence[tuple[Array, Array]]) -> Array:
+    """The points of pairs on the body on which they are farther from each other."""
+    on_a, on_b = np.array([x for x, _ in every]), np.array([y for _, y in every])
+    wider = float(np.ptp(on_a, axis=0).max()) > float(np.ptp(on_b, axis=0).max())
+    return on_a if wider else on_b
+
+
+def _farthest(spots: Array) -> tuple[int, int]:
+    """Two that are far from each other: the one farthest from the middle, and from that one."""
     first = int(np.linalg.norm(spots - spots.mean(axis=0), axis=1).argmax())
-    last = int(np.linalg.norm(spots - spots[first], axis=1).argmax())
-    return tuple(every[k] for k in (first, last))
+    return first, int(np.linalg.norm(spots - spots[first], axis=1).argmax())
+
+
+def _ends(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
+    return tuple(every[k] for k in _farthest(spots))
 
 
 def _corners(every: Sequence[tuple[Array, Array]], spots: Array) -> tuple[tuple[Array, Array], ...]:
