@@ -9,6 +9,7 @@ import numpy as np
 
 from standoff.geometry import FormulaSurface
 from standoff.solids import Solid
+from standoff_studies.machines.polyhedra import polyhedron
 
 Corner = tuple[float, float]
 TURN = 2.0 * np.pi
@@ -61,6 +62,75 @@ def bolt(thread: Thread, turns: int, bore: float, name: str = "bolt") -> Solid:
 def nut(thread: Thread, turns: int, outside: float, play: float, name: str = "nut") -> Solid:
     """Turns of a nut, two or more, round outside, as far from the bolt's profile as the play."""
     return _threaded(thread, thread.profile(play), outside, turns, name)
+
+
+def faceted_bolt(
+    thread: Thread, turns: int, bore: float, chords: int, name: str = "bolt"
+) -> Solid:
+    """What `bolt` is, of plane faces with so many chords to a turn, whose corners lie on it."""
+    return _faceted(thread, thread.profile(), bore, (turns, chords), name)
+
+
+def faceted_nut(
+    thread: Thread, turns: int, outside: float, play: float, chords: int, name: str = "nut"
+) -> Solid:
+    """What `nut` is, of plane faces with so many chords to a turn, whose corners lie on it."""
+    return _faceted(thread, thread.profile(play), outside, (turns, chords), name)
+
+
+def chords_within(radius: float, tolerance: float) -> int:
+    """The fewest chords of a turn that are within a length of their arcs."""
+    return int(np.ceil(np.pi / np.arccos(1.0 - tolerance / radius)))
+
+
+def _faceted(
+    thread: Thread, profile: list[Corner], other: float, count: tuple[int, int], name: str
+) -> Solid:
+    """What `_threaded` makes, its strips cut into chords: plane quadrilaterals where the radius is
+    the same all along, and two triangles elsewhere."""
+    (turns, chords), far = count, len(profile) - 1
+    end = turns * chords
+    # the last line of the profile is the first one of the next turn; `far` is on the other cylinder
+    lines = [*profile[:-1], (other, profile[0][1])]
+    numbers: dict[tuple[int, int], int] = {}
+    points = []
+
+    def at(line: int, step: int) -> int:
+        if (line, step) not in numbers:
+            numbers[line, step] = len(points)
+            (radius, height), angle = lines[line], TURN * step / chords
+            climb = height + thread.climb(angle)
+            points.append((radius * np.cos(angle), radius * np.sin(angle), climb))
+        return numbers[line, step]
+
+    def top(line: int, step: int) -> int:
+        return at(line, step) if line < far else at(0, step + chords)
+
+    loops = [
+        loop
+        for k in range(far)
+        for i in range(end)
+        for loop in _chord(
+            (at(k, i), at(k, i + 1), top(k + 1, i + 1), top(k + 1, i)),
+            profile[k][0] == profile[k + 1][0],
+        )
+    ]
+    loops += [
+        (at(far, i), at(far, i + 1), at(far, i + 1 + chords), at(far, i + chords))
+        for i in range(end)
+    ]
+    for first in (0, end):
+        for i in range(first, first + chords):
+            loops += _chord((at(0, i), at(0, i + 1), at(far, i + 1), at(far, i)), plane=False)
+        rows = [at(k, first) for k in range(far)]
+        loops.append((*rows, at(0, first + chords), at(far, first + chords), at(far, first)))
+    return polyhedron(np.array(points), loops, name)
+
+
+def _chord(corners: tuple[int, int, int, int], plane: bool) -> list[tuple[int, ...]]:
+    """A chord of a strip, as loops of vertices."""
+    a, b, c, d = corners
+    return [corners] if plane else [(a, b, c), (a, c, d)]
 
 
 def _threaded(thread: Thread, profile: list[Corner], other: float, turns: int, name: str) -> Solid:
