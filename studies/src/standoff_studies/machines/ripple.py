@@ -1,0 +1,80 @@
+"""What two bodies push each other with as both move on as they are told."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import standoff as so
+from standoff import simulation as sim
+from standoff.motion.paths import Path
+from standoff.solids import Solid
+
+Array = NDArray[np.float64]
+IMMOVABLE = 1e9
+"""Mass and inertia, kg and kg m², of a body that goes on as it began whatever pushes it."""
+
+
+class Push(NamedTuple):
+    """Of each tick, n, in world axes.
+
+    Attributes
+    ----------
+    times : (n,) array
+    force : (n, 3) array
+        On B.
+    torque : (n, 3) array
+        On B, about the origin of A.
+    distance : (n,) array
+        Of the deepest place, less than zero in overlap.
+    normal, point : (n, 3) array
+        Of the deepest place, from A to B, and its point on B.
+    spots : (n,) array of int
+    uncertified, jumps : int
+        As `SystemRun` counts them.
+    """
+
+    times: Array
+    force: Array
+    torque: Array
+    distance: Array
+    normal: Array
+    point: Array
+    spots: NDArray[np.int64]
+    uncertified: int
+    jumps: int
+
+
+def pushed(
+    a: Solid,
+    start: tuple[so.Pose, so.Twist],
+    b: Solid,
+    path: Path,
+    law: sim.HuntCrossley,
+    ticks: tuple[float, int],
+) -> Push:
+    """A goes on from its pose with its twist, and B along its path, from an overlap as it is; ticks
+    are told as their length and how many."""
+    dt, count = ticks
+    pose, twist = start
+    weight = {"mass": IMMOVABLE, "inertia": IMMOVABLE * np.eye(3)}
+    bodies = [
+        sim.RigidBody.free(a, pose=pose, twist=twist, **weight),
+        sim.RigidBody.driven(b, path),
+    ]
+    operator = sim.Operator(sim.System(bodies, law, gravity=[0, 0, 0]), dt)
+    run = operator.run(operator.start(allow_overlap=True), count)
+    _, point, normal = (each[1:, 0] for each in run.witness_points)
+    return Push(
+        run.times[1:],
+        run.forces[1:, 0],
+        -np.diff(run.angular_momenta(0), axis=0) / dt,
+        run.distances[1:, 0],
+        normal,
+        point,
+        run.spots[1:, 0],
+        run.uncertified,
+        run.jumps,
+    )
