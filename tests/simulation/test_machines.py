@@ -23,7 +23,7 @@ from standoff_studies.machines.keys import (
     pushed,
 )
 from standoff_studies.machines.prisms import extruded
-from standoff_studies.machines.threads import Thread, bolt, nut
+from standoff_studies.machines.threads import THREAD, bolt, nut
 from standoff_studies.soak import solid_parts
 
 GEARS = Path(__file__).parents[2] / "examples" / "planar" / "gears.py"
@@ -99,7 +99,6 @@ def test_a_key_slides_into_its_lock() -> None:
 @pytest.mark.soak
 def test_a_nut_runs_down_its_bolt() -> None:
     """By its own weight, without friction: its pitch in a turn, as fast as the helix lets it."""
-    thread = Thread(radius=0.01, pitch=0.003, height=0.0015, crest=0.0006, slope=0.5)
     play = 5e-5
     start = so.Pose(np.eye(3), [1e-6, 0.0, thread.pitch])
     bodies = [

@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 
 import standoff as so
 from standoff import simulation as sim
+from standoff.kernels.solids import contact_places as P
+from standoff.kernels.solids import front_rows as R
 from standoff.motion.paths import Path
+from standoff.simulation.system_state import SystemState, state_length
 from standoff.solids import Solid
 
 Array = NDArray[np.float64]
@@ -25,29 +28,29 @@ class Push(NamedTuple):
     times : (n,) array
     force : (n, 3) array
         On B.
-    torque : (n, 3) array
-        On B, about the origin of A.
     distance : (n,) array
         Of the deepest place, less than zero in overlap.
-    normal, point : (n, 3) array
-        Of the deepest place, from A to B, and its point on B.
+    normal : (n, 3) array
+        Of the deepest place, from A to B.
     spots : (n,) array of int
+        That push.
+    rows : int
+        Pairs of pieces that are kept in the end.
     uncertified, jumps : int
         As `SystemRun` counts them.
     """
 
     times: Array
     force: Array
-    torque: Array
     distance: Array
     normal: Array
-    point: Array
     spots: NDArray[np.int64]
+    rows: int
     uncertified: int
     jumps: int
 
 
-def pushed(
+def pushed_along(
     a: Solid,
     start: tuple[so.Pose, so.Twist],
     b: Solid,
@@ -66,15 +69,18 @@ def pushed(
     ]
     operator = sim.Operator(sim.System(bodies, law, gravity=[0, 0, 0]), dt)
     run = operator.run(operator.start(allow_overlap=True), count)
-    _, point, normal = (each[1:, 0] for each in run.witness_points)
     return Push(
         run.times[1:],
         run.forces[1:, 0],
-        -np.diff(run.angular_momenta(0), axis=0) / dt,
         run.distances[1:, 0],
-        normal,
-        point,
+        run.witness_points[2][1:, 0],
         run.spots[1:, 0],
+        _rows_of(operator.system, run.final),
         run.uncertified,
         run.jumps,
     )
+
+
+def _rows_of(system: sim.System, state: SystemState) -> int:
+    kept = state.data[state_length(system) + system.kept_starts()[0] :]
+    return int(kept[P.F_STORE + R.N_ROWS])

@@ -55,6 +55,10 @@ class Thread(NamedTuple):
         return self.pitch * turned / TURN
 
 
+THREAD = Thread(radius=0.01, pitch=0.003, height=0.0015, crest=0.0006, slope=0.5)
+"""Of 20 mm, as the machines have it; metres."""
+
+
 def bolt(thread: Thread, turns: int, bore: float, name: str = "bolt") -> Solid:
     """Turns of a bolt, two or more, from half a pitch below z = 0, with a round hole along it."""
     return _threaded(thread, thread.profile(), bore, (turns, TURN), name)
@@ -65,88 +69,39 @@ def nut(thread: Thread, turns: int, outside: float, play: float, name: str = "nu
     return _threaded(thread, thread.profile(play), outside, (turns, TURN), name)
 
 
-def segment(thread: Thread, angle: float, outside: float, play: float) -> Solid:
-    """What a nut has about one turn of the bolt's ridge, from the angle 0 to one below a turn."""
-    return _threaded(thread, thread.profile(play), outside, (1, angle), "segment")
-
-
-def faceted_bolt(thread: Thread, turns: int, bore: float, chords: int) -> Solid:
-    """`bolt` of plane faces whose corners lie on it, so many chords to a turn."""
-    return _faceted(thread, thread.profile(), bore, (turns, chords), "bolt")
-
-
-def faceted_nut(thread: Thread, turns: int, outside: float, play: float, chords: int) -> Solid:
-    """`nut` of plane faces whose corners lie on it, so many chords to a turn."""
-    return _faceted(thread, thread.profile(play), outside, (turns, chords), "nut")
-
-
-def faceted_segment(thread: Thread, own: int, outside: float, play: float, chords: int) -> Solid:
-    """`segment` of plane faces whose corners lie on it, with its own of so many chords to a
-    turn."""
-    profile = thread.profile(play)
-    ring = [*profile, (outside, profile[-1][1]), (outside, profile[0][1])]
-    swept = _Chords(thread, ring, chords)
-    for k in range(len(ring)):
-        swept.strip((k, 0), ((k + 1) % len(ring), 0), range(own))
-    swept.loops += [[swept.at(k, i) for k in range(len(ring))] for i in (0, own)]
-    return swept.solid("segment")
-
-
-def chords_within(radius: float, tolerance: float) -> int:
-    """The fewest chords of a turn that are within a length of their arcs."""
-    return int(np.ceil(np.pi / np.arccos(1.0 - tolerance / radius)))
-
-
-class _Chords:
-    """Corners on lines that are swept along the helix, at even angles, and loops of them."""
-
-    def __init__(self, thread: Thread, lines: list[Corner], chords: int) -> None:
-        self._thread, self._lines, self._chords = thread, lines, chords
-        self._numbers: dict[tuple[int, int], int] = {}
-        self._points: list[tuple[float, float, float]] = []
-        self.loops: list[list[int]] = []
-
-    def at(self, line: int, step: int) -> int:
-        """The number of a line's corner."""
-        if (line, step) not in self._numbers:
-            self._numbers[line, step] = len(self._points)
-            (radius, height), angle = self._lines[line], TURN * step / self._chords
-            climb = height + self._thread.climb(angle)
-            self._points.append((radius * np.cos(angle), radius * np.sin(angle), climb))
-        return self._numbers[line, step]
-
-    def strip(self, low: tuple[int, int], high: tuple[int, int], steps: range) -> None:
-        """Between two lines, each with how many steps it is ahead: plane quadrilaterals where both
-        are as far from the axis, else two triangles to a chord."""
-        plane = self._lines[low[0]][0] == self._lines[high[0]][0]
-        for i in steps:
-            a, b, c, d = (
-                self.at(line, ahead + k)
-                for (line, ahead), k in ((low, i), (low, i + 1), (high, i + 1), (high, i))
-            )
-            self.loops += [[a, b, c, d]] if plane else [[a, b, c], [a, c, d]]
-
-    def solid(self, name: str) -> Solid:
-        return polyhedron(np.array(self._points), self.loops, name)
-
-
-def _faceted(
-    thread: Thread, profile: list[Corner], other: float, count: tuple[int, int], name: str
+def segment(
+    thread: Thread, angle: float, other: float, apart: float, name: str = "segment"
 ) -> Solid:
-    """What `_threaded` makes of whole turns, of plane faces; `count`: of turns, and of chords."""
-    (turns, chords), far = count, len(profile) - 1
-    swept = _Chords(thread, [*profile[:-1], (other, profile[0][1])], chords)
-    end = turns * chords
-    # the profile's last line is its first one, a turn ahead; `far` is on the other cylinder
-    lines = [*((k, 0) for k in range(far)), (0, chords)]
-    for low, high in pairwise(lines):
-        swept.strip(low, high, range(end))
-    swept.strip((far, 0), (far, chords), range(end))
-    for first in (0, end):
-        swept.strip((0, 0), (far, 0), range(first, first + chords))
-        corners = [*lines, (far, chords), (far, 0)]
-        swept.loops.append([swept.at(line, ahead + first) for line, ahead in corners])
-    return swept.solid(name)
+    """One turn of the profile, moved off the bolt by a length, through an angle below a whole turn:
+    of a bolt where the radius of the other wall is the less, else of a nut."""
+    return _threaded(thread, thread.profile(apart), other, (1, angle), name)
+
+
+def faceted_segment(
+    thread: Thread, sweep: tuple[float, int], other: float, apart: float, name: str = "segment"
+) -> Solid:
+    """`segment` of plane faces whose corners lie on it; its angle, and of how many chords."""
+    (angle, chords), profile = sweep, thread.profile(apart)
+    ring = [*profile, (other, profile[-1][1]), (other, profile[0][1])]
+    n, loops = len(ring), []
+    for k in range(n):
+        after = (k + 1) % n
+        plane = ring[k][0] == ring[after][0]
+        for at in range(0, n * chords, n):
+            a, b, c, d = at + k, at + n + k, at + n + after, at + after
+            loops += [[a, b, c, d]] if plane else [[a, b, c], [a, c, d]]
+    loops += [[at + k for k in range(n)] for at in (0, n * chords)]
+    points = [
+        (radius * np.cos(turned), radius * np.sin(turned), height + thread.climb(turned))
+        for turned in np.linspace(0.0, angle, chords + 1)
+        for radius, height in ring
+    ]
+    return polyhedron(np.array(points), loops, name)
+
+
+def chords_within(radius: float, angle: float, tolerance: float) -> int:
+    """The fewest chords of an arc that are within a length of it."""
+    return int(np.ceil(0.5 * angle / np.arccos(1.0 - tolerance / radius)))
 
 
 def _threaded(
