@@ -23,7 +23,7 @@ from standoff_studies.machines.keys import (
     pushed,
 )
 from standoff_studies.machines.prisms import extruded
-from standoff_studies.machines.threads import THREAD, bolt, nut
+from standoff_studies.machines.threads import bolt, nut
 from standoff_studies.soak import solid_parts
 
 GEARS = Path(__file__).parents[2] / "examples" / "planar" / "gears.py"
@@ -100,20 +100,20 @@ def test_a_key_slides_into_its_lock() -> None:
 def test_a_nut_runs_down_its_bolt() -> None:
     """By its own weight, without friction: its pitch in a turn, as fast as the helix lets it."""
     play = 5e-5
-    start = so.Pose(np.eye(3), [1e-6, 0.0, thread.pitch])
+    start = so.Pose(np.eye(3), [1e-6, 0.0, THREAD.pitch])
     bodies = [
-        RigidBody.fixed(bolt(thread, 4, 0.004)),
-        RigidBody.free(nut(thread, 2, 0.015, play), density=7800.0, pose=start),
+        RigidBody.fixed(bolt(THREAD, 4, 0.004)),
+        RigidBody.free(nut(THREAD, 2, 0.015, play), density=7800.0, pose=start),
     ]
     law = HuntCrossley(stiffness=1e6, damping=20.0, depth=2e-5)
     operator = Operator(System(bodies, law), 1e-4)
     run = operator.run(operator.start(), 4500, 50)
-    turn, moved = turned(run), run.positions(1)[:, 2] - thread.pitch
-    lean = np.hypot(1.0, thread.slope)
-    rise = thread.pitch / (2.0 * np.pi)
-    steep = np.sqrt(1.0 + thread.slope**2 + (rise / (thread.radius - thread.height)) ** 2)
+    turn, moved = turned(run), run.positions(1)[:, 2] - THREAD.pitch
+    lean = np.hypot(1.0, THREAD.slope)
+    rise = THREAD.pitch / (2.0 * np.pi)
+    steep = np.sqrt(1.0 + THREAD.slope**2 + (rise / (THREAD.radius - THREAD.height)) ** 2)
     assert turn[-1] < -2.5
-    off = moved - thread.climb(turn)
+    off = moved - THREAD.climb(turn)
     assert np.abs(off).max() < lean * play + steep * run.deepest
     assert run.deepest < 4e-5
     assert run.uncertified == run.jumps == 0

@@ -17,10 +17,9 @@ import standoff as so
 from standoff import simulation as sim
 from standoff.kernels.solids.contact_places import MOST_ROWS
 from standoff.solids import Solid
-from standoff_studies.machines.ripple import Push, pushed_along
+from standoff_studies.machines.ripple import Push, one_after_the_other, pushed_along
 from standoff_studies.machines.threads import (
     THREAD,
-    TURN,
     bolt,
     chords_within,
     faceted_segment,
@@ -37,11 +36,14 @@ OVERLAP = 1e-5
 OFF = 1e-7
 """Of the nut from the bolt's axis, metres: on the axis the whole line of contact is as deep, and
 the exact nut's springs are at places of chance along it."""
-NUT, TURNED = TURN / 8.0, TURN / 16.0
-"""Angle of the nut's part; and how far it turns, radians. The bolt's part has as much of an angle
-to spare at both ends."""
-TICKS = 800
+NUT, TURNED = np.radians(43.4), np.radians(21.7)
+"""Angle of the nut's part; and how far it turns, radians: two chords and one of the coarsest mesh.
+The bolt's part has as much as the turn to spare at both ends."""
+RUNS, TICKS = 8, 100
+"""How often the turn begins anew, and the ticks of each: pairs of pieces that have come near are
+kept until they are twice as many as at first, for which there is no room."""
 TOLERANCES = (1e-2, 1e-3, 1e-4)
+AT_REST = so.Pose.identity(), so.Twist.zero()
 
 
 def exact_parts() -> tuple[Solid, Solid]:
@@ -70,18 +72,23 @@ def whole() -> tuple[Solid, Solid]:
     return bolt(THREAD, 4, BORE), nut(THREAD, 2, OUTSIDE, PLAY)
 
 
-def turned(a: Solid, b: Solid, ticks: int = TICKS) -> Push:
+def turned(a: Solid, b: Solid, depth: float = OVERLAP, runs: int = RUNS) -> Push:
     """What pushes the nut up while it turns on the bolt; times are angles, radians, and forces in
-    that of a spring that is as deep as the overlap."""
-    rise = THREAD.climb(1.0)
-    steep = np.sqrt(1.0 + THREAD.slope**2 + (rise / THREAD.radius) ** 2)
-    down = PLAY * np.hypot(1.0, THREAD.slope) + OVERLAP * steep
-    start = so.Pose(so.Pose.exp([0, 0, TURNED]).rotation, [OFF, 0, THREAD.climb(TURNED) - down])
-    path = so.motion.ConstantTwist(start, so.Twist([0, 0, rise], [0, 0, 1.0]))
-    law = sim.HuntCrossley(stiffness=1e6, depth=OVERLAP)
-    fixed = so.Pose.identity(), so.Twist.zero()
-    push = pushed_along(a, fixed, b, path, law, (TURNED / ticks, ticks))
+    that of a spring that is as deep as the overlap. `depth`: the greatest that is to be expected,
+    metres."""
+    law = sim.HuntCrossley(stiffness=1e6, depth=depth)
+    span = TURNED / runs
+    found = []
+    for k in range(runs):
+        push = pushed_along(a, AT_REST, b, _helix(TURNED + span * k), law, (span / TICKS, TICKS))
+        found.append(push._replace(times=push.times + span * k))
+    push = one_after_the_other(found)
     return push._replace(force=push.force / law.force(OVERLAP))
+
+
+def chord_reach(part: float) -> float:
+    """How far a chord of a mesh is from its helix along the flank's normal, at most, metres."""
+    return part * 2.0 * THREAD.radius * THREAD.slope / _steep()
 
 
 def ripple(force: np.ndarray) -> float:
@@ -101,9 +108,25 @@ def described(name: str, push: Push) -> str:
 
 def pushes() -> dict[str, Push]:
     """Of the meshes, then of the exact part, by name."""
-    parts = {f"mesh to {part:g} of the size": meshed_parts(part) for part in TOLERANCES}
-    parts["exact"] = exact_parts()
-    return {name: turned(*pair) for name, pair in parts.items()}
+    found = {
+        f"mesh to {part:g} of the size": turned(*meshed_parts(part), OVERLAP + chord_reach(part))
+        for part in TOLERANCES
+    }
+    return found | {"exact": turned(*exact_parts())}
+
+
+def _helix(angle: float) -> so.motion.ConstantTwist:
+    """Of the nut from an angle on, a radian a second."""
+    down = PLAY * np.hypot(1.0, THREAD.slope) + OVERLAP * _steep()
+    place = [OFF, 0.0, THREAD.climb(angle) - down]
+    start = so.Pose(so.Pose.exp([0.0, 0.0, angle]).rotation, place)
+    return so.motion.ConstantTwist(start, so.Twist([0, 0, THREAD.climb(1.0)], [0, 0, 1.0]))
+
+
+def _steep() -> float:
+    """How much longer a way along the axis is than along the flank's normal, at the crest."""
+    rise = THREAD.climb(1.0) / THREAD.radius
+    return float(np.sqrt(1.0 + THREAD.slope**2 + rise**2))
 
 
 def _chords(part: float, angle: float) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -35,7 +36,7 @@ class Push(NamedTuple):
     spots : (n,) array of int
         That push.
     rows : int
-        Pairs of pieces that are kept in the end.
+        Pairs of pieces that are kept in the end; the most of several runs.
     uncertified, jumps : int
         As `SystemRun` counts them.
     """
@@ -79,6 +80,15 @@ def pushed_along(
         run.uncertified,
         run.jumps,
     )
+
+
+def one_after_the_other(pushes: Sequence[Push]) -> Push:
+    """What several runs tell, as one."""
+    arrays = ([np.asarray(p[k]) for p in pushes] for k in range(5))
+    times, force, distance, normal, spots = (np.concatenate(each) for each in arrays)
+    rows = max(p.rows for p in pushes)
+    counts = (sum(p.uncertified for p in pushes), sum(p.jumps for p in pushes))
+    return Push(times, force, distance, normal, spots, rows, *counts)
 
 
 def _rows_of(system: sim.System, state: SystemState) -> int:
