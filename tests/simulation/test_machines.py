@@ -13,6 +13,7 @@ from standoff.motion import ConstantTwist
 from standoff.simulation import HuntCrossley, Operator, RigidBody, System, SystemRun
 from standoff.solids import Solid
 from standoff.tracking import Status
+from standoff_studies.machines import nut_ripple
 from standoff_studies.machines.keys import (
     ASIDE,
     FRICTION,
@@ -23,7 +24,7 @@ from standoff_studies.machines.keys import (
     pushed,
 )
 from standoff_studies.machines.prisms import extruded
-from standoff_studies.machines.threads import bolt, nut
+from standoff_studies.machines.threads import THREAD, bolt, nut
 from standoff_studies.soak import solid_parts
 
 GEARS = Path(__file__).parents[2] / "examples" / "planar" / "gears.py"
@@ -124,3 +125,18 @@ def test_a_nut_runs_down_its_bolt() -> None:
     spin = run.angular_velocities(1)[-1, 2]
     assert 0.5 * inertia * spin**2 == pytest.approx(-force * turn[-1], rel=0.02)
     assert np.ptp(run.energy.balance) < 0.01 * np.ptp(run.energy.potential)
+
+
+def test_the_force_on_an_exact_nut_hardly_ripples() -> None:
+    """As it turns in an overlap that is the same all the time; a mesh's chords reach deeper into
+    the bolt, as far as they are from their helix."""
+    exact = nut_ripple.turned(*nut_ripple.exact_parts(), runs=1)
+    assert exact.uncertified == exact.jumps == 0
+    assert np.abs(exact.distance + nut_ripple.OVERLAP).max() < nut_ripple.OFF
+    assert nut_ripple.ripple(exact.force[:, 2]) < 5e-3
+    part = 1e-2
+    deepest = nut_ripple.OVERLAP + nut_ripple.chord_reach(part)
+    mesh = nut_ripple.turned(*nut_ripple.meshed_parts(part), deepest, runs=1)
+    assert mesh.uncertified == mesh.jumps == 0
+    assert 0.8 * deepest < -mesh.distance.min() < deepest
+    assert nut_ripple.ripple(mesh.force[:, 2]) > 1.0
