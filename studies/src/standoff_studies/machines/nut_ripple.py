@@ -34,8 +34,8 @@ PLAY = 2.5e-4
 OVERLAP = 1e-5
 """Along the normal of the flank, metres."""
 OFF = 1e-7
-"""Of the nut from the bolt's axis, metres: on the axis the whole line of contact is as deep, and
-the exact nut's springs are at places of chance along it."""
+"""Of the nut from the bolt's axis, metres: on it a whole nut's flank is as deep all along, at more
+spots than there is room for."""
 NUT, TURNED = np.radians(43.4), np.radians(21.7)
 """Angle of the nut's part; and how far it turns, radians: two chords and one of the coarsest mesh.
 The bolt's part has as much as the turn to spare at both ends."""
