@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class Push(NamedTuple):
     force: Array
     distance: Array
     normal: Array
-    spots: NDArray[np.int64]
+    spots: NDArray[Any]
     rows: int
     uncertified: int
     jumps: int
@@ -63,9 +63,9 @@ def pushed_along(
     are told as their length and how many."""
     dt, count = ticks
     pose, twist = start
-    weight = {"mass": IMMOVABLE, "inertia": IMMOVABLE * np.eye(3)}
+    inertia = IMMOVABLE * np.eye(3)
     bodies = [
-        sim.RigidBody.free(a, pose=pose, twist=twist, **weight),
+        sim.RigidBody.free(a, mass=IMMOVABLE, inertia=inertia, pose=pose, twist=twist),
         sim.RigidBody.driven(b, path),
     ]
     operator = sim.Operator(sim.System(bodies, law, gravity=[0, 0, 0]), dt)
