@@ -29,13 +29,12 @@ from standoff.simulation.system_state import SystemState, state_length
 from standoff.solids import Solid
 from standoff_studies.machines.keys import WITHIN, pushed
 from standoff_studies.machines.prisms import extruded
-from standoff_studies.machines.threads import Thread, bolt, nut
+from standoff_studies.machines.threads import THREAD, bolt, nut
 from standoff_studies.soak import solid_parts
 
 GEARS = Path(__file__).parents[1] / "examples" / "planar" / "gears.py"
 STEEL = 7800.0
 """kg/m³."""
-THREAD = Thread(radius=0.01, pitch=0.003, height=0.0015, crest=0.0006, slope=0.5)
 BOLT_TURNS, NUT_TURNS = 4, 2
 PLAY = 5e-5
 """Of the nut, all round, metres."""

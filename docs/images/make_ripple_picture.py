@@ -20,6 +20,7 @@ import standoff as so
 from standoff import simulation as sim
 from standoff.geometry import Curve, Line
 from standoff_studies.machines.prisms import extruded
+from standoff_studies.machines.ripple import pushed_along
 
 HERE = Path(__file__).parent
 GEARS = HERE.parents[1] / "examples" / "planar" / "gears.py"
@@ -96,28 +97,19 @@ def turned_through(a: so.PlanarSolid, b: so.PlanarSolid, bases: tuple[float, flo
     pose_a, pose_b = drawn["in_mesh"](begin, *TEETH, 0.5 * MODULE * sum(TEETH))
     lag = (THINNING * sum(bases) + OVERLAP) / bases[1]
     pose_b = pose_b @ so.Pose(drawn["turn"](lag), (0, 0, 0))
-    bodies = [
-        sim.RigidBody.free(
-            extruded(a, -1e-3, 6e-3), mass=1e9, inertia=1e9 * np.eye(3), pose=pose_a,
-            twist=so.Twist([0, 0, 0], [0, 0, 1.0]),
-        ),
-        sim.RigidBody.driven(
-            extruded(b, 0.0, 5e-3),
-            so.motion.ConstantTwist(pose_b, so.Twist([0, 0, 0], [0, 0, -ratio])),
-        ),
-    ]  # fmt: skip
+    start = pose_a, so.Twist([0, 0, 0], [0, 0, 1.0])
+    path = so.motion.ConstantTwist(pose_b, so.Twist([0, 0, 0], [0, 0, -ratio]))
     law = sim.HuntCrossley(stiffness=1e6, depth=OVERLAP)
-    dt = PITCHES * pitch / FRAMES
-    operator = sim.Operator(sim.System(bodies, law, gravity=[0, 0, 0]), dt)
-    run = operator.run(operator.start(allow_overlap=True), FRAMES)
-    force = run.forces[1:, 0]
-    pressed = run.distances[1:, 0] < 0.0
-    ways = (run.witness_points[2][1:, 0], force)
+    solids = extruded(a, -1e-3, 6e-3), extruded(b, 0.0, 5e-3)
+    ticks = PITCHES * pitch / FRAMES, FRAMES
+    push = pushed_along(solids[0], start, solids[1], path, law, ticks)
+    pressed, force = push.distance < 0.0, push.force
+    ways = push.normal, force
     off = [
         np.where(pressed, np.degrees(np.arctan2(w[:, 1], w[:, 0])) - UPWARDS, np.nan) for w in ways
     ]
     whole = np.linalg.norm(force, axis=1) / (CORNERS * law.force(OVERLAP))
-    return Ripple(run.times[1:] / pitch, whole, *off)
+    return Ripple(push.times / pitch, whole, *off)
 
 
 def drawn_as(found: dict[str, Ripple]) -> None:

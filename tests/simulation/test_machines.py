@@ -13,6 +13,7 @@ from standoff.motion import ConstantTwist
 from standoff.simulation import HuntCrossley, Operator, RigidBody, System, SystemRun
 from standoff.solids import Solid
 from standoff.tracking import Status
+from standoff_studies.machines import nut_ripple
 from standoff_studies.machines.keys import (
     ASIDE,
     FRICTION,
@@ -23,7 +24,7 @@ from standoff_studies.machines.keys import (
     pushed,
 )
 from standoff_studies.machines.prisms import extruded
-from standoff_studies.machines.threads import Thread, bolt, nut
+from standoff_studies.machines.threads import THREAD, bolt, nut
 from standoff_studies.soak import solid_parts
 
 GEARS = Path(__file__).parents[2] / "examples" / "planar" / "gears.py"
@@ -99,22 +100,21 @@ def test_a_key_slides_into_its_lock() -> None:
 @pytest.mark.soak
 def test_a_nut_runs_down_its_bolt() -> None:
     """By its own weight, without friction: its pitch in a turn, as fast as the helix lets it."""
-    thread = Thread(radius=0.01, pitch=0.003, height=0.0015, crest=0.0006, slope=0.5)
     play = 5e-5
-    start = so.Pose(np.eye(3), [1e-6, 0.0, thread.pitch])
+    start = so.Pose(np.eye(3), [1e-6, 0.0, THREAD.pitch])
     bodies = [
-        RigidBody.fixed(bolt(thread, 4, 0.004)),
-        RigidBody.free(nut(thread, 2, 0.015, play), density=7800.0, pose=start),
+        RigidBody.fixed(bolt(THREAD, 4, 0.004)),
+        RigidBody.free(nut(THREAD, 2, 0.015, play), density=7800.0, pose=start),
     ]
     law = HuntCrossley(stiffness=1e6, damping=20.0, depth=2e-5)
     operator = Operator(System(bodies, law), 1e-4)
     run = operator.run(operator.start(), 4500, 50)
-    turn, moved = turned(run), run.positions(1)[:, 2] - thread.pitch
-    lean = np.hypot(1.0, thread.slope)
-    rise = thread.pitch / (2.0 * np.pi)
-    steep = np.sqrt(1.0 + thread.slope**2 + (rise / (thread.radius - thread.height)) ** 2)
+    turn, moved = turned(run), run.positions(1)[:, 2] - THREAD.pitch
+    lean = np.hypot(1.0, THREAD.slope)
+    rise = THREAD.pitch / (2.0 * np.pi)
+    steep = np.sqrt(1.0 + THREAD.slope**2 + (rise / (THREAD.radius - THREAD.height)) ** 2)
     assert turn[-1] < -2.5
-    off = moved - thread.climb(turn)
+    off = moved - THREAD.climb(turn)
     assert np.abs(off).max() < lean * play + steep * run.deepest
     assert run.deepest < 4e-5
     assert run.uncertified == run.jumps == 0
@@ -125,3 +125,18 @@ def test_a_nut_runs_down_its_bolt() -> None:
     spin = run.angular_velocities(1)[-1, 2]
     assert 0.5 * inertia * spin**2 == pytest.approx(-force * turn[-1], rel=0.02)
     assert np.ptp(run.energy.balance) < 0.01 * np.ptp(run.energy.potential)
+
+
+def test_the_force_on_an_exact_nut_hardly_ripples() -> None:
+    """As it turns in an overlap that is the same all the time; a mesh's chords reach deeper into
+    the bolt, as far as they are from their helix."""
+    exact = nut_ripple.turned(*nut_ripple.exact_parts(), runs=1)
+    assert exact.uncertified == exact.jumps == 0
+    assert np.abs(exact.distance + nut_ripple.OVERLAP).max() < nut_ripple.OFF
+    assert nut_ripple.ripple(exact.force[:, 2]) < 5e-3
+    part = 1e-2
+    deepest = nut_ripple.OVERLAP + nut_ripple.chord_reach(part)
+    mesh = nut_ripple.turned(*nut_ripple.meshed_parts(part), deepest, runs=1)
+    assert mesh.uncertified == mesh.jumps == 0
+    assert 0.8 * deepest < -mesh.distance.min() < deepest
+    assert nut_ripple.ripple(mesh.force[:, 2]) > 1.0
