@@ -16,7 +16,6 @@ from standoff.robots.paths import joint_path
 from standoff.robots.proof import PathProof
 from standoff.robots.robot_model import RobotModel
 from standoff.view.moving_world import MovingWorld
-from standoff.world.solid_pairs import refuse_solids
 
 Array = NDArray[np.float64]
 
@@ -100,7 +99,6 @@ def shown_robot(robot: RobotModel, what: Any, times: Any, proof: PathProof | Non
     StandoffError
         As of `view.view`.
     """
-    refuse_solids(robot.world.bodies, "The page of a robot", "show it without them")
     shape = shape_of(what)
     path = None
     if shape is not None and len(shape) == 1:
