@@ -114,7 +114,7 @@ def side_of(system, body, pose):
         ahead(x.own, at[2]),
         ahead(x.numbers, at[3]),
         pose,
-        S.OUTSIDE,
+        S.PRESSED,
     )
     return side, Fans(ahead(x.fan_ints, at[4]), ahead(x.fan_reals, at[5]))
 

@@ -27,7 +27,7 @@ def signed_minima(solids, pose, fans, lists, asked, stack, counts):
     """All minima of the signed distance up to a length on both sides of 0, into the rows of
     `lists`: how many sets of them there are, -1 where there is no room. `asked`: how much of the
     length is for their patches alone."""
-    a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    a, b = side_at(solids[0], STILL, S.PRESSED), side_at(solids[1], pose, S.PRESSED)
     around = fans_at(fans[0]), fans_at(fans[1])
     best, minima, sets = pointer(lists[0], 0), pointer(lists[1], 0), pointer(lists[2], 0)
     best[N_MINIMA], best[LOST] = 0.0, 0.0
@@ -45,7 +45,7 @@ def signed_minima(solids, pose, fans, lists, asked, stack, counts):
 def follow_contact(solids, pose, fans, kept, room, asked, counts):
     """A frame of a contact that is kept, B at a pose in A's frame, in `room`, which begins with
     what is asked: how many places there are. `asked`: as `signed_minima`."""
-    a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    a, b = side_at(solids[0], STILL, S.PRESSED), side_at(solids[1], pose, S.PRESSED)
     c = pointer(counts, 0)
     for k in range(len(counts)):
         c[k] = 0
@@ -59,7 +59,7 @@ def follow_contact(solids, pose, fans, kept, room, asked, counts):
 def pieces_parted(solids, pose, row, lists, counts):
     """By how much B is moved along a row's normal, at which its two leaves are proven not to meet;
     0: not proven."""
-    a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
+    a, b = side_at(solids[0], STILL, S.PRESSED), side_at(solids[1], pose, S.PRESSED)
     best, minima = pointer(lists[0], 0), pointer(lists[1], 0)
     leaves, q = (int(row[1]), int(row[2])), (row[3], row[4], row[5], row[6])
     n = (row[NORMAL], row[NORMAL + 1], row[NORMAL + 2])

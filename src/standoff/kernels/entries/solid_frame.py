@@ -189,8 +189,8 @@ def meet(g):
     ask_places(g, room)
     for k in range(8):
         g.counts[k] = 0
-    a = B.seen_at(g.a, B.unmoved(), S.OUTSIDE)
-    both = Both(a, B.seen_at(g.b, g.pose, S.OUTSIDE), g.fans)
+    a = B.seen_at(g.a, B.unmoved(), S.PRESSED)
+    both = Both(a, B.seen_at(g.b, g.pose, S.PRESSED), g.fans)
     choices = Choices(inf, g.asked[B.Q_FRAME + 3], 1, MOST_ROWS)
     n = contact_frame(both, kept, choices, room, g.counts)
     minima, sets = ahead(room, AT_NORMALS), ahead(room, AT_SETS)

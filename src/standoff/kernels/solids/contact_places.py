@@ -49,7 +49,7 @@ from standoff.kernels.solids.spatial_tolerances import (
     NEARLY_OPPOSED,
     ONE_PLACE,
 )
-from standoff.kernels.solids.stationary import is_stationary
+from standoff.kernels.solids.stationary import is_held_inside, is_stationary
 
 # What a place holds: its number; 1 where it is felt; signed distance, normal, and both points.
 P_KEY, P_FELT, P_DISTANCE, P_NORMAL, P_A, P_B = 0, 1, 2, 3, 6, 9
@@ -235,8 +235,10 @@ def is_opposed(both, leaves, minima, o):
     """Are a common normal's features turned to each other, nearly? A vertex that is under the plane
     of a face may have come there past its side, pressed by another one."""
     q = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
-    n = normal_of(minima, o)
-    return is_stationary(both.a, both.b, both.fans[0], both.fans[1], q, leaves, n, NEARLY_OPPOSED)
+    a, b, fans, n = both.a, both.b, both.fans, normal_of(minima, o)
+    if is_stationary(a, b, fans[0], fans[1], q, leaves, n, NEARLY_OPPOSED):
+        return True
+    return is_held_inside(a, b, fans, q, leaves, n, NEARLY_OPPOSED)
 
 
 @kernel

@@ -50,7 +50,7 @@ from standoff.kernels.solids.spatial_progress import (
 )
 from standoff.kernels.solids.spatial_search import node_ints
 from standoff.kernels.solids.spatial_tolerances import PAST_SIDE
-from standoff.kernels.solids.stationary import is_stationary
+from standoff.kernels.solids.stationary import is_held_inside, is_stationary
 
 # Widths of a leaf by which Newton's method may leave it on its way, and end outside of it.
 ASTRAY, ENDS_BEYOND = 1.0, PAST_SIDE
@@ -86,13 +86,23 @@ def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
         return
     still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
     faces = is_face(a, leaves[0]) or is_face(b, leaves[1])
+    hollow = False
     if not still and not faces:
-        back = scale(-1.0, n)
-        if not is_stationary(a, b, fans[0], fans[1], q, leaves, back, AT_OPTIMUM):
+        if d > 0.0:
+            n, d = scale(-1.0, n), -d
+            still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
+            hollow = not still and is_held_inside(a, b, fans, q, leaves, n, AT_OPTIMUM)
+        else:
+            hollow = is_held_inside(a, b, fans, q, leaves, n, AT_OPTIMUM)
+            if not hollow:
+                n, d = scale(-1.0, n), -d
+                still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
+        if not still and not hollow:
             return
-        still, n, d = True, back, -d
     ja, jb = jets_at(a, leaves[0], b, leaves[1], q)
     told = still and is_signed_minimum(ja, jb, n, d, best[SIZE])
+    if hollow:  # seen from inside the vertex is as far away as it is deep
+        told = is_signed_minimum(ja, jb, scale(-1.0, n), -d, best[SIZE])
     put_normal(leaves, (q, n, d), (ja[0], jb[0]), 0.0 if told else NO_MINIMUM, best, minima)
 
 

@@ -43,8 +43,34 @@ def cone_of(side, node):
     """(axis, half angle) of the normals of features below a node; -1: there are none."""
     if side.sense == S.EITHER:
         return (0.0, 0.0, 1.0), pi
-    o = node_reals(side, node) + (S.N_OUT if side.sense == S.OUTSIDE else S.N_IN)
-    return rotate(side.pose.R, vector_at(side.numbers, o)), side.numbers[o + 3]
+    m, R = side.numbers, side.pose.R
+    o = node_reals(side, node) + (S.N_IN if side.sense == S.INSIDE else S.N_OUT)
+    axis, angle = rotate(R, vector_at(m, o)), m[o + 3]
+    if side.sense != S.PRESSED:
+        return axis, angle
+    o = node_reals(side, node) + S.N_IN
+    return cone_of_both(axis, angle, scale(-1.0, rotate(R, vector_at(m, o))), m[o + 3])
+
+
+@kernel
+def cone_of_both(axis, angle, other, wide):
+    """A cone round two, of which either may hold nothing, with a half angle of -1."""
+    if wide < 0.0:
+        return axis, angle
+    if angle < 0.0:
+        return other, wide
+    between = angle_between(axis, other)
+    if between + wide <= angle:
+        return axis, angle
+    if between + angle <= wide:
+        return other, wide
+    middle = add(axis, other)
+    length = norm(middle)
+    if length < 1.0:  # farther apart than a third of a turn
+        return axis, pi
+    middle = scale(1.0 / length, middle)
+    reach = max(angle_between(middle, axis) + angle, angle_between(middle, other) + wide)
+    return middle, min(reach + CONE_SPARE, pi)
 
 
 @kernel

@@ -21,6 +21,9 @@ DIM, FEATURE, CHART, CUT, SENSES, LIST, N_LIST, NATURAL = range(8)
 NO_KIND, ROUND_ARC, TURNED, SCREWED = -1, -2, -3, -4
 # SENSES: where a minimum may lie, seen from outside the material, from inside, or both.
 OUTSIDE, INSIDE, EITHER = 1, 2, 3
+# Of a side alone: seen from outside, with the edges and vertices besides that what has gone into
+# the material may be nearest to.
+PRESSED = 4
 
 LEAF_REALS = 32
 RECT = 0  # u0, u1, v0, v1
