@@ -17,7 +17,7 @@ from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids.contact_ends import is_straight
 from standoff.kernels.solids.contact_front import CONTACT_REALS, MOST_RETRIED_IN
-from standoff.kernels.solids.contact_search import is_face
+from standoff.kernels.solids.contact_search import is_face, is_hollow
 from standoff.kernels.solids.contact_sets import NO_MINIMUM, gather_signed
 from standoff.kernels.solids.front_branches import (
     BRANCH_REALS,
@@ -236,7 +236,8 @@ def is_opposed(both, leaves, minima, o):
     of a face may have come there past its side, pressed by another one."""
     q = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
     a, b, fans, n = both.a, both.b, both.fans, normal_of(minima, o)
-    if is_stationary(a, b, fans[0], fans[1], q, leaves, n, NEARLY_OPPOSED):
+    sharp = not (is_hollow(a, leaves[0]) or is_hollow(b, leaves[1]))
+    if sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, NEARLY_OPPOSED):
         return True
     return is_held_inside(a, b, fans, q, leaves, n, NEARLY_OPPOSED)
 

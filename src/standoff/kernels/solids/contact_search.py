@@ -75,6 +75,13 @@ def is_face(side, leaf):
 
 
 @kernel
+def is_hollow(side, leaf):
+    """Is it of an edge at which the material reaches more than half way round?"""
+    r = leaf_ints(side, leaf)
+    return side.own[r + S.DIM] == 1 and side.own[r + S.SENSES] == S.INSIDE
+
+
+@kernel
 def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
     """Keep a pair of points with a common normal, if both are on the solids and its depth is no
     more than `deepest`; of two edges' two normals the one that both solids have. spot: parameters,
@@ -84,19 +91,21 @@ def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
         return
     if not (on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])):
         return
-    still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
+    # a hollow edge has no normal that leads out of its solid
+    sharp = not (is_hollow(a, leaves[0]) or is_hollow(b, leaves[1]))
+    still = sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
     faces = is_face(a, leaves[0]) or is_face(b, leaves[1])
     hollow = False
     if not still and not faces:
         if d > 0.0:
             n, d = scale(-1.0, n), -d
-            still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
+            still = sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
             hollow = not still and is_held_inside(a, b, fans, q, leaves, n, AT_OPTIMUM)
         else:
             hollow = is_held_inside(a, b, fans, q, leaves, n, AT_OPTIMUM)
             if not hollow:
                 n, d = scale(-1.0, n), -d
-                still = is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
+                still = sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
         if not still and not hollow:
             return
     ja, jb = jets_at(a, leaves[0], b, leaves[1], q)
@@ -124,8 +133,13 @@ def is_askew(plane, edge, face, line):
 def rests_for(a, b, turn, best):
     """How far B may move before two leaves, as parts, may hold a common normal up to best[ABOVE],
     length; 0: they may now. `turn`: of B as it moves, radians per length. Two planes never do: what
-    their faces share has corners, which other pairs hold."""
+    their faces share has corners, which other pairs hold. Nor does a hollow edge, but with a vertex
+    that has gone past it."""
     if is_plane_leaf(a.side, a.leaf) and is_plane_leaf(b.side, b.leaf):
+        return inf
+    if is_hollow(a.side, a.leaf) and b.side.own[leaf_ints(b.side, b.leaf) + S.DIM] > 0:
+        return inf
+    if is_hollow(b.side, b.leaf) and a.side.own[leaf_ints(a.side, a.leaf) + S.DIM] > 0:
         return inf
     horizon = best[ABOVE]
     low, free, _ = no_pair(a, b, horizon, best[ROUNDING], turn)

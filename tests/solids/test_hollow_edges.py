@@ -1,0 +1,133 @@
+"""What has gone past a hollow edge, or into a hollow corner: the nearest of the boundary is then
+the edge or the vertex itself, and it holds as the faces beside it do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import standoff as so
+from bodies.brep_solids import prism
+from standoff import simulation as sim
+from standoff.bodies import Edge, Face
+from standoff.geometry import Line, Plane
+from standoff.solids import Solid, distance
+from standoff.tracking.status import Status
+
+STILL = so.Pose.identity()
+BRACKET = Solid.from_brep(*prism([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], 2.0))
+BOX = Solid(so.shapes.box((1.0, 1.0, 1.0)))
+DOWN = -1e-3
+SPIKE = Solid(
+    so.Body.from_points([[0, 0, 0], [-0.2, 1, -0.2], [0.2, 1, -0.2], [0.2, 1, 0.2], [-0.2, 1, 0.2]])
+)
+"""Its vertex down, at the origin."""
+
+
+def groove(slope: float) -> Solid:
+    """A block whose top has a hollow edge along z, through the origin."""
+    rim = np.tan(slope)
+    return Solid.from_brep(*prism([(-1, -1), (1, -1), (1, rim), (0, 0), (-1, rim)], 1.0))
+
+
+def at(*place: float) -> so.Pose:
+    return so.Pose(np.eye(3), place)
+
+
+@pytest.mark.parametrize("degrees", [1.0, 20.0, 45.0])
+def test_a_vertex_passes_a_hollow_edge_without_a_jump(degrees: float) -> None:
+    """Its depth is that of the point, whichever feature is the nearest."""
+    block = groove(np.radians(degrees))
+    wide = 2.0 * np.tan(np.radians(degrees))
+    features = set()
+    for k, across in enumerate(np.linspace(-wide, wide, 21)):
+        tip = np.array([DOWN * across, DOWN, 0.5 + 0.01 * k])
+        true = block.signed_distance(tip[None])
+        found = distance(block, SPIKE, STILL, at(*tip), minima=5e-3)
+        assert found.status is Status.OVERLAPPING
+        assert found.distance == pytest.approx(true.distance[0], abs=1e-12)
+        assert found.normal == pytest.approx(true.gradient[0], abs=1e-9)
+        turned = distance(SPIKE, block, at(*tip), STILL, minima=5e-3)
+        assert turned.distance == pytest.approx(found.distance, abs=1e-12)
+        assert turned.normal == pytest.approx(-found.normal, abs=1e-9)
+        features.add(found.feature_a.kind)
+    assert features == {"face", "edge"}
+
+
+def test_a_box_in_a_corner_is_held_at_all_its_corners() -> None:
+    over = 1e-4, 2e-4
+    found = distance(BRACKET, BOX, STILL, at(1.5 - over[0], 1.5 - over[1], 1.0), minima=1e-3)
+    told = sorted((round(m.distance, 9), *m.normal.round(6).tolist()) for m in found.minima)
+    size = np.hypot(*over)
+    beside = (round(-size, 9), *(np.round(over / size, 6).tolist()), 0.0)
+    assert told == [beside, beside, (-2e-4, 0.0, 1.0, 0.0), (-1e-4, 1.0, 0.0, 0.0)]
+
+
+def notched() -> Solid:
+    """A cube of side 2 without the cube of side 1 at one of its corners: three walls that meet at
+    (1, 1, 1)."""
+    points = np.array([(x, y, z) for x in (0, 1, 2) for y in (0, 1, 2) for z in (0, 1, 2)], float)
+    loops = []
+    for turn in range(3):
+
+        def number(a: int, b: int, c: int, turn: int = turn) -> int:
+            x, y, z = np.roll((a, b, c), turn)
+            return 9 * int(x) + 3 * int(y) + int(z)
+
+        low = [(0, 0, 0), (0, 0, 2), (0, 2, 2), (0, 2, 0)]
+        high = [(2, 0, 0), (2, 2, 0), (2, 2, 1), (2, 1, 1), (2, 1, 2), (2, 0, 2)]
+        wall = [(1, 1, 1), (1, 2, 1), (1, 2, 2), (1, 1, 2)]
+        loops += [[number(*corner) for corner in loop] for loop in (low, high, wall)]
+    used = sorted({k for loop in loops for k in loop})
+    loops = [[used.index(k) for k in loop] for loop in loops]
+    vertices = points[used]
+    ends = sorted({tuple(sorted((a, b))) for loop in loops for a, b in ways(loop)})
+    edges = [Edge(Line(vertices[a], vertices[b]), a, b) for a, b in ends]
+    faces = []
+    for loop in loops:
+        area = sum(np.cross(vertices[a], vertices[b]) for a, b in ways(loop))
+        along = vertices[loop[1]] - vertices[loop[0]]
+        plane = Plane.through(vertices[loop[0]], along, np.cross(area, along))
+        sides = tuple((ends.index((min(w), max(w))), 1 if w[0] < w[1] else -1) for w in ways(loop))
+        faces.append(Face((plane,), sides))
+    return Solid.from_brep(vertices, edges, faces)
+
+
+def ways(loop: list[int]) -> list[tuple[int, int]]:
+    return list(zip(loop, loop[1:] + loop[:1], strict=True))
+
+
+def test_a_vertex_in_a_hollow_corner() -> None:
+    """Three walls: the nearest is the corner where they meet."""
+    pocket = notched()
+    over = np.array([1e-4, 2e-4, 3e-4])
+    found = distance(pocket, BOX, STILL, at(*(1.5 - over)), minima=1e-3)
+    assert found.feature_a.kind == found.feature_b.kind == "vertex"
+    assert found.distance == pytest.approx(-np.linalg.norm(over), abs=1e-12)
+    assert found.normal == pytest.approx(over / np.linalg.norm(over), abs=1e-9)
+
+
+def test_nothing_that_is_apart_is_pressed() -> None:
+    """A vertex outside a convex edge, and one beside a thin wall, has no place below 0."""
+    for place in ((3.6, 1.6, 1.0), (-0.6, -0.6, 1.0), (1.5 + 1e-3, 1.5 + 1e-3, 1.0)):
+        found = distance(BRACKET, BOX, STILL, at(*place), minima=0.5)
+        assert found.status in (Status.CONVERGED, Status.CONTINUUM)
+        assert min(m.distance for m in found.minima) > 0.0
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_box_that_is_pressed_askew_into_a_corner_stays_there(turned: bool) -> None:
+    """Without the places at the hollow edge it would turn about its far corners, and fall through
+    the floor."""
+    law = sim.HuntCrossley(stiffness=1e6, depth=1e-4, damping=0.5)
+    box = sim.RigidBody.free(
+        BOX, mass=1.0, inertia=np.eye(3) / 6.0, pose=at(1.5 + 1e-4, 1.5 + 1e-4, 1.0)
+    )
+    bodies = [sim.RigidBody.fixed(BRACKET), box]
+    system = sim.System(bodies[::-1] if turned else bodies, law, gravity=[-0.3, -1.0, 0.0])
+    run = sim.Operator(system, 1e-4).run(sim.Operator(system, 1e-4).start(), 5000, 500)
+    moved = run.final.pose(0 if turned else 1)
+    corner = moved.translation + moved.rotation @ [-0.5, -0.5, 0.0]
+    assert np.abs(corner[:2] - 1.0).max() < 5e-4
+    assert run.uncertified == 0
+    assert run.deepest < 5e-4
