@@ -119,9 +119,10 @@ def is_held_inside(a, b, fans, q, leaves, n, sine):
     deepest of its own?"""
     for side in range(2):
         own, other = (a, b) if side == 0 else (b, a)
-        dims = own.own[leaf_ints(own, leaves[side]) + S.DIM], other.own[
-            leaf_ints(other, leaves[1 - side]) + S.DIM
-        ]
+        dims = (
+            own.own[leaf_ints(own, leaves[side]) + S.DIM],
+            other.own[leaf_ints(other, leaves[1 - side]) + S.DIM],
+        )
         if dims[0] > 0 or dims[1] == 2:
             continue
         way = n if side == 0 else scale(-1.0, n)
