@@ -67,7 +67,7 @@ class Search:
         empty = pointed(np.zeros(1))
         array = np.zeros(1)
         self.scratch = K.Scratch(
-            array, empty, empty, empty, empty, array, empty, empty, empty, empty, empty,
+            array, empty, empty, empty, empty, array, empty, empty, empty, empty, empty, empty,
             pointed(self.near), pointed(self.near_numbers),
         )  # fmt: skip
 

@@ -243,11 +243,12 @@ every = 10
     assert "certified" not in told
 
 
-def test_what_takes_convex_bodies_alone_says_so(folder: Path) -> None:
+def test_obstacles_of_a_robot_may_be_solids(folder: Path) -> None:
     ring = loaded(folder, PAIR).bodies["ring"]
     for obstacle in (ring, so.compound({"ring": ring})):
-        with pytest.raises(so.StandoffError, match="give its convex pieces, as a Compound"):
-            read_obstacles({"ring": obstacle}, ())
+        body, pose = read_obstacles({"ring": obstacle}, ())["ring"]
+        assert body is obstacle
+        assert np.array_equal(pose.matrix, np.eye(4))
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ import numpy as np
 
 import standoff as so
 from standoff import simulation as sim
+from standoff.cli.terminal import tell
 from standoff.kernels.solids.contact_places import MOST_ROWS
 from standoff.solids import Solid
 from standoff_studies.machines.ripple import Push, one_after_the_other, pushed_along
@@ -135,7 +136,7 @@ def _chords(part: float, angle: float) -> int:
 
 def main() -> None:
     for name, push in (pushes() | {"exact, a whole nut": turned(*whole())}).items():
-        print(described(name, push))
+        tell(described(name, push))
 
 
 if __name__ == "__main__":
