@@ -131,3 +131,15 @@ def test_a_box_that_is_pressed_askew_into_a_corner_stays_there(turned: bool) -> 
     assert np.abs(corner[:2] - 1.0).max() < 5e-4
     assert run.uncertified == 0
     assert run.deepest < 5e-4
+
+
+def test_what_stands_before_a_convex_edge_is_not_pressed() -> None:
+    """The far vertex of a small box looks away from the edge that it stands before."""
+    small = Solid(so.shapes.box((0.05, 0.05, 0.05)))
+    law = sim.HuntCrossley(stiffness=1e6, depth=0.05, damping=0.5)
+    body = sim.RigidBody.free(small, mass=1.0, inertia=np.eye(3), pose=at(3.1, 1.1, 1.0))
+    system = sim.System([sim.RigidBody.fixed(BRACKET), body], law, gravity=[0.0, 0.0, 0.0])
+    operator = sim.Operator(system, 1e-6)
+    contact = operator.run(operator.start(), 1, 1).final.contact(0)
+    assert min(place.distance for place in contact.places) == pytest.approx(0.075 * np.sqrt(2.0))
+    assert contact.spots == ()
