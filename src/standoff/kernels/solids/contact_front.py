@@ -24,6 +24,7 @@ from standoff.kernels.solids.contact_minimum import (
 )
 from standoff.kernels.solids.contact_search import (
     follow_signed,
+    is_vertex,
     keep_signed,
     normal_in_leaves,
     rests_for,
@@ -255,11 +256,6 @@ def held_for(a, b, q, away, turn):
 def put_four(r, o, q):
     for i in range(4):
         r[o + i] = q[i]
-
-
-@kernel
-def is_vertex(side, leaf):
-    return side.own[leaf_ints(side, leaf) + S.DIM] == 0
 
 
 @kernel

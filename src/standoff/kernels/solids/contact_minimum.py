@@ -37,7 +37,8 @@ from standoff.kernels.tolerances import CONTACT_STEPS
 from standoff.kernels.values import Pose
 
 # Eigenvalues of the contact-regular matrix of a minimum: so many above 0, and so many below. Those
-# of parameters that a feature does not have count above.
+# of parameters that a feature does not have count above, and those of a fillet of no radius belong
+# below: it is bent inwards as much as can be.
 ABOVE_ZERO, BELOW_ZERO = 5, 3
 # Of the first steps of Newton's method so many may make its error greater, and by how much.
 FREE_STEPS, MAY_GROW = 3, 10.0
@@ -141,10 +142,11 @@ def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
 
 
 @kernel
-def is_signed_minimum(ja, jb, n, d, span):
+def is_signed_minimum(ja, jb, n, d, span, hollow):
     """Does the signed distance grow in all directions to second order, or stay? Then the
     contact-regular matrix has as many eigenvalues on either side of 0 as at two points apart; these
-    numbers do not change with d while it is regular."""
+    numbers do not change with d while it is regular. `hollow`: of how many parameters that a
+    feature does not have it is as of a fillet of no radius."""
     J, scales, values = stack_matrix(), stack_reals(), stack_reals()
     contact_scales(ja, jb, span, scales)
     scaled_jacobian(ja, jb, n, d, span, scales, J)
@@ -154,7 +156,7 @@ def is_signed_minimum(ja, jb, n, d, span):
     for k in range(8):
         above += 1 if values[k] > FLAT_VALLEY else 0
         below += 1 if values[k] < -FLAT_VALLEY else 0
-    return above <= ABOVE_ZERO and below <= BELOW_ZERO
+    return above <= ABOVE_ZERO + hollow and below <= BELOW_ZERO - hollow
 
 
 @kernel

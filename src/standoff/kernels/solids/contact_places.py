@@ -17,7 +17,7 @@ from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids.contact_ends import is_straight
 from standoff.kernels.solids.contact_front import CONTACT_REALS, MOST_RETRIED_IN
-from standoff.kernels.solids.contact_search import is_face, is_hollow
+from standoff.kernels.solids.contact_search import is_face
 from standoff.kernels.solids.contact_sets import NO_MINIMUM, gather_signed
 from standoff.kernels.solids.front_branches import (
     BRANCH_REALS,
@@ -27,6 +27,7 @@ from standoff.kernels.solids.front_branches import (
 )
 from standoff.kernels.solids.front_motion import put_three
 from standoff.kernels.solids.front_rows import FRAME, N_MERGED, STORE_REALS, Front
+from standoff.kernels.solids.hollow import held_at_hollow, is_hollow
 from standoff.kernels.solids.minima_sets import (
     MOST_SETS,
     SET_BRANCH,
@@ -49,7 +50,7 @@ from standoff.kernels.solids.spatial_tolerances import (
     NEARLY_OPPOSED,
     ONE_PLACE,
 )
-from standoff.kernels.solids.stationary import is_held_inside, is_stationary
+from standoff.kernels.solids.stationary import is_stationary
 
 # What a place holds: its number; 1 where it is felt; signed distance, normal, and both points.
 P_KEY, P_FELT, P_DISTANCE, P_NORMAL, P_A, P_B = 0, 1, 2, 3, 6, 9
@@ -239,7 +240,7 @@ def is_opposed(both, leaves, minima, o):
     sharp = not (is_hollow(a, leaves[0]) or is_hollow(b, leaves[1]))
     if sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, NEARLY_OPPOSED):
         return True
-    return is_held_inside(a, b, fans, q, leaves, n, NEARLY_OPPOSED)
+    return held_at_hollow(a, b, fans, q, leaves, n, NEARLY_OPPOSED) > 0
 
 
 @kernel

@@ -11,6 +11,7 @@ from math import inf
 from standoff.kernels.algebra.vectors import cross, dot, norm, scale
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.contact_ends import dim_of, is_straight
 from standoff.kernels.solids.contact_minimum import (
     is_signed_minimum,
     limits_of,
@@ -29,12 +30,13 @@ from standoff.kernels.solids.front_branches import (
 )
 from standoff.kernels.solids.front_motion import put_three
 from standoff.kernels.solids.front_rows import N_BRANCHES
+from standoff.kernels.solids.hollow import held_at_hollow, is_hollow
 from standoff.kernels.solids.over_plane import is_plane_leaf
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
 from standoff.kernels.solids.spatial_closing import no_pair
 from standoff.kernels.solids.spatial_minimum import jets_at
-from standoff.kernels.solids.spatial_pieces import ZERO, leaf_box, leaf_ints, on_solid
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_box, on_solid
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BOUND,
@@ -49,8 +51,8 @@ from standoff.kernels.solids.spatial_progress import (
     evaluations,
 )
 from standoff.kernels.solids.spatial_search import node_ints
-from standoff.kernels.solids.spatial_tolerances import PAST_SIDE
-from standoff.kernels.solids.stationary import is_held_inside, is_stationary
+from standoff.kernels.solids.spatial_tolerances import NEARLY_OPPOSED, PAST_SIDE
+from standoff.kernels.solids.stationary import is_stationary
 
 # Widths of a leaf by which Newton's method may leave it on its way, and end outside of it.
 ASTRAY, ENDS_BEYOND = 1.0, PAST_SIDE
@@ -71,47 +73,53 @@ def leaf_holding(side, leaf, u, v):
 
 @kernel
 def is_face(side, leaf):
-    return side.own[leaf_ints(side, leaf) + S.DIM] == 2
+    return dim_of(side, leaf) == 2
 
 
 @kernel
-def is_hollow(side, leaf):
-    """Is it of an edge at which the material reaches more than half way round?"""
-    r = leaf_ints(side, leaf)
-    return side.own[r + S.DIM] == 1 and side.own[r + S.SENSES] == S.INSIDE
+def is_vertex(side, leaf):
+    return dim_of(side, leaf) == 0
+
+
+@kernel
+def held_along(a, b, fans, leaves, spot, sine):
+    """(whether a pair of points is held along its normal, n, d, of how many parameters it is as of
+    a fillet); of two edges' two normals n is the one that both solids have. `sine`: of the angle by
+    which a small step may lead along it. spot: parameters, normal, signed distance."""
+    q, n, d = spot
+    # a hollow edge has no normal that leads out of its solid
+    sharp = not (is_hollow(a, leaves[0]) or is_hollow(b, leaves[1]))
+    of_a_face = is_face(a, leaves[0]) or is_face(b, leaves[1])
+    for _ in range(2):
+        if sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, sine):
+            return True, n, d, 0
+        if of_a_face:
+            break
+        if d < 0.0:
+            hollow = held_at_hollow(a, b, fans, q, leaves, n, sine)
+            if hollow > 0:
+                return True, n, d, hollow
+        n, d = scale(-1.0, n), -d
+    return False, n, d, 0
 
 
 @kernel
 def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
     """Keep a pair of points with a common normal, if both are on the solids and its depth is no
-    more than `deepest`; of two edges' two normals the one that both solids have. spot: parameters,
-    normal, signed distance."""
+    more than `deepest`. spot: parameters, normal, signed distance."""
     q, n, d = spot
     if abs(d) > (best[ABOVE] if d >= 0.0 else deepest):
         return
     if not (on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])):
         return
-    # a hollow edge has no normal that leads out of its solid
-    sharp = not (is_hollow(a, leaves[0]) or is_hollow(b, leaves[1]))
-    still = sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
-    faces = is_face(a, leaves[0]) or is_face(b, leaves[1])
-    hollow = False
-    if not still and not faces:
-        if d > 0.0:
-            n, d = scale(-1.0, n), -d
-            still = sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
-            hollow = not still and is_held_inside(a, b, fans, q, leaves, n, AT_OPTIMUM)
-        else:
-            hollow = is_held_inside(a, b, fans, q, leaves, n, AT_OPTIMUM)
-            if not hollow:
-                n, d = scale(-1.0, n), -d
-                still = sharp and is_stationary(a, b, fans[0], fans[1], q, leaves, n, AT_OPTIMUM)
-        if not still and not hollow:
-            return
     ja, jb = jets_at(a, leaves[0], b, leaves[1], q)
-    told = still and is_signed_minimum(ja, jb, n, d, best[SIZE])
-    if hollow:  # seen from inside the vertex is as far away as it is deep
-        told = is_signed_minimum(ja, jb, scale(-1.0, n), -d, best[SIZE])
+    held, n, d, hollow = held_along(a, b, fans, leaves, (q, n, d), AT_OPTIMUM)
+    told = held and is_signed_minimum(ja, jb, n, d, best[SIZE], hollow)
+    if not held and not is_face(a, leaves[0]) and not is_face(b, leaves[1]):
+        # edges that are tilted a little are pressed beside a minimum
+        held, n, d, hollow = held_along(a, b, fans, leaves, spot, NEARLY_OPPOSED)
+        if not held or d >= 0.0 or not is_signed_minimum(ja, jb, n, d, best[SIZE], hollow):
+            return
     put_normal(leaves, (q, n, d), (ja[0], jb[0]), 0.0 if told else NO_MINIMUM, best, minima)
 
 
@@ -119,14 +127,23 @@ def keep_signed(a, b, fans, leaves, spot, deepest, best, minima):
 def is_askew(plane, edge, face, line):
     """Is a straight edge, of a jet `line`, not level with a plane? No point of it then has the
     plane's normal across it."""
-    if not (
-        is_plane_leaf(plane[0], plane[1]) and edge[0].own[leaf_ints(edge[0], edge[1]) + S.DIM] == 1
-    ):
+    if not (is_plane_leaf(plane[0], plane[1]) and dim_of(edge[0], edge[1]) == 1):
         return False
     if norm(line[3]) > 0.0:
         return False
     n = cross(face[1], face[2])
     return abs(dot(n, line[1])) > AT_OPTIMUM * norm(n) * norm(line[1])
+
+
+@kernel
+def never_in(hollow, part):
+    """Is one part of a hollow edge, and the other one of what is not held there: a face, or where
+    both are straight an edge?"""
+    if not is_hollow(hollow.side, hollow.leaf) or is_vertex(part.side, part.leaf):
+        return False
+    if is_face(part.side, part.leaf):
+        return True
+    return is_straight(hollow.side, hollow.leaf) and is_straight(part.side, part.leaf)
 
 
 @kernel
@@ -137,9 +154,7 @@ def rests_for(a, b, turn, best):
     that has gone past it."""
     if is_plane_leaf(a.side, a.leaf) and is_plane_leaf(b.side, b.leaf):
         return inf
-    if is_hollow(a.side, a.leaf) and b.side.own[leaf_ints(b.side, b.leaf) + S.DIM] > 0:
-        return inf
-    if is_hollow(b.side, b.leaf) and a.side.own[leaf_ints(a.side, a.leaf) + S.DIM] > 0:
+    if never_in(a, b) or never_in(b, a):
         return inf
     horizon = best[ABOVE]
     low, free, _ = no_pair(a, b, horizon, best[ROUNDING], turn)

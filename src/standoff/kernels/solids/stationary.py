@@ -5,11 +5,11 @@ At one no direction into a boundary leads towards the other point. The direction
 face's tangents, of an edge and into its faces, of the corners and edges of a vertex: its fan.
 """
 
-from math import atan2, pi, sin, sqrt
+from math import atan2, cos, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import cross, dot, norm, rotate_back, scale, sub
+from standoff.kernels.algebra.vectors import add, cross, dot, norm, rotate_back, scale, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import coedge_conormal, edge_record
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
@@ -79,62 +79,23 @@ def steepest_at_vertex(fans, vertex, n):
 
 
 @kernel
+def arriving_at(fans, o):
+    """The unit vector along the edge that arrives at a vertex in a face's corner."""
+    leaving, across, angle = (
+        read_vector(fans.reals, o),
+        read_vector(fans.reals, o + 3),
+        fans.reals[o + 6],
+    )
+    return add(scale(cos(angle), leaving), scale(sin(angle), across))
+
+
+@kernel
 def is_stationary(a, b, fans_a, fans_b, q, leaves, n, sine):
     """Can no small step on either boundary make a pair nearer along its normal, to first order?
     `sine`: of the angle by which one may."""
     if steepest(a, fans_a, leaves[0], q[0], q[1], n) > sine:
         return False
     return steepest(b, fans_b, leaves[1], q[2], q[3], scale(-1.0, n)) <= sine
-
-
-@kernel
-def leads_inside(side, fans, leaf, u, n):
-    """Does n, A's frame, lead from an edge's or a vertex's point into the material, where no
-    direction of the boundary leads along it: against the normals of the faces that meet there, of a
-    vertex each by the area of its corner?"""
-    r, total = leaf_ints(side, leaf), 0.0
-    feature, own = side.own[r + S.FEATURE], rotate_back(side.pose.R, n)
-    if side.own[r + S.DIM] == 0:
-        row = FAN_INTS * (feature - side.ints[L.N_FACES] - side.ints[L.N_EDGES])
-        for k in range(fans.ints[row + 3]):
-            o = fans.ints[row + 2] + CORNER_REALS * k
-            leaving, across = read_vector(fans.reals, o), read_vector(fans.reals, o + 3)
-            total += sin(fans.reals[o + 6]) * dot(cross(leaving, across), own)
-        return total < 0.0
-    tangent = rotate_back(side.pose.R, leaf_jet(side, leaf, u, 0.0)[1])
-    size, row = norm(tangent), edge_record(side.ints, feature)
-    if size == 0.0:
-        return False
-    for k in (L.EDGE_COEDGE_0, L.EDGE_COEDGE_1):
-        along = scale(1.0 / size, tangent)
-        normal = coedge_conormal(side.ints, side.reals, side.ints[row + k], along, u)[1]
-        total += dot(normal, own)
-    return total < 0.0
-
-
-@kernel
-def is_held_inside(a, b, fans, q, leaves, n, sine):
-    """Has a vertex gone into the other solid, where a hollow edge or vertex of it is the nearest of
-    its boundary: along n, from A to B, no small step there comes nearer, and the vertex is the
-    deepest of its own?"""
-    for side in range(2):
-        own, other = (a, b) if side == 0 else (b, a)
-        dims = (
-            own.own[leaf_ints(own, leaves[side]) + S.DIM],
-            other.own[leaf_ints(other, leaves[1 - side]) + S.DIM],
-        )
-        if dims[0] > 0 or dims[1] == 2:
-            continue
-        way = n if side == 0 else scale(-1.0, n)
-        u, v = q[2 * side], q[2 * side + 1]
-        s, t = q[2 - 2 * side], q[3 - 2 * side]
-        if (
-            steepest(own, fans[side], leaves[side], u, v, way) <= sine
-            and steepest(other, fans[1 - side], leaves[1 - side], s, t, way) <= sine
-            and leads_inside(other, fans[1 - side], leaves[1 - side], s, way)
-        ):
-            return True
-    return False
 
 
 @kernel
