@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 from standoff.kernels.algebra.rigid import read_rotation, read_vector
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.contact_front import find_contacts
+from standoff.kernels.solids.contact_ends import is_pressed
+from standoff.kernels.solids.contact_front import find_contacts, keep_ends, look_again
 from standoff.kernels.solids.contact_hollow import leave_out_through
 from standoff.kernels.solids.contact_places import (
     F_MADE,
     F_POSE,
     Asked,
+    goes_missing,
     kept_front,
     moved_lately,
     tell_places,
@@ -66,10 +68,14 @@ def contact_frame(both, kept, choices, room, counts):
     if front.store[GONE] > FARTHEST_GONE * best[SIZE]:
         front.store[N_ROWS], front.store[GONE] = 0.0, 0.0
     find_contacts(both, front, radius, choices.retried, best, minima, counts)
-    if kept[F_MADE] == 0.0:
-        leave_out_through(both, best, minima, counts)
     lately = moved_lately(kept, step, choices.retried)
     asked = Asked(lately, best[ABOVE], choices.shared, choices.wider)
+    if kept[F_MADE] == 0.0:
+        leave_out_through(both, best, minima, counts)
+    elif goes_missing(kept, asked, best, minima):
+        look_again(both, front, radius, best, minima, counts)
+    if is_pressed(best, minima):
+        keep_ends(both, front, best, minima, counts)
     n = tell_places(both, front, asked, best, minima, sets, kept)
     for i in range(9):
         kept[F_POSE + i] = b.pose.R[i]

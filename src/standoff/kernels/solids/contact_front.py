@@ -16,7 +16,7 @@ from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.contact_ends import is_pressed, keep_end
+from standoff.kernels.solids.contact_ends import keep_end
 from standoff.kernels.solids.contact_minimum import (
     middles_of,
     moved_side,
@@ -334,6 +334,18 @@ def look_at_woken(both, front, radius, retried, best, minima, counts):
             look_at_leaves(both, front, k, 1.0 / radius, retried, best, minima, counts)
 
 
+@kernel
+def look_again(both, front, radius, best, minima, counts):
+    """Try Newton's method now in all pairs of leaves in which it came to none and that may hold a
+    common normal."""
+    rows = front.rows
+    for k in range(int(front.store[N_ROWS])):
+        o = CONTACT_REALS * k
+        if waits(front, k):
+            rows[o + C_TOLD], rows[o + C_REST] = CAME_TO_NONE, -inf
+    look_at_woken(both, front, radius, 1, best, minima, counts)
+
+
 @shared
 def find_contacts(both, front, radius, retried, best, minima, counts):
     """Keep the common normals up to best[ABOVE] on both sides of 0, and what the branches come to
@@ -350,7 +362,5 @@ def find_contacts(both, front, radius, retried, best, minima, counts):
     wake_ended(both, front, best[ABOVE])
     look_at_rows(both, front, radius, retried, best, minima, counts)
     look_at_woken(both, front, radius, retried, best, minima, counts)
-    if is_pressed(best, minima):
-        keep_ends(both, front, best, minima, counts)
     if store[MAKING] > 0.0 and best[LOST] == 0.0:
         store[N_MADE], store[MAKING] = store[N_ROWS], 0.0

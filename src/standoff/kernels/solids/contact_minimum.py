@@ -7,7 +7,7 @@ along n, only touches there.
 """
 
 from standoff.kernels.algebra.symmetric import symmetric_eigen
-from standoff.kernels.algebra.vectors import add, cross, dot, norm, scale, sub, unit
+from standoff.kernels.algebra.vectors import add, cross, dot, norm, rotate, scale, sub, unit
 from standoff.kernels.compiler.decorators import (
     kernel,
     reals_on_stack,
@@ -22,6 +22,7 @@ from standoff.kernels.pair.contact_newton import (
     solve_contact,
 )
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.hollow import beside_edge, is_hollow
 from standoff.kernels.solids.spatial_minimum import jets_at, nearest
 from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, outward_normal
 from standoff.kernels.solids.spatial_progress import ball_round, middle
@@ -79,17 +80,24 @@ def middles_of(a, b):
 
 
 @kernel
+def way_out(side, leaf, jet, u):
+    """Of a face its outward normal, A's frame; of a hollow edge the sum of both beside it."""
+    if side.own[leaf_ints(side, leaf) + S.DIM] == 2:
+        return outward_normal(side, leaf, jet)
+    if not is_hollow(side, leaf):
+        return ZERO
+    beside = add(beside_edge(side, leaf, u, 0), beside_edge(side, leaf, u, 1))
+    return rotate(side.pose.R, beside)
+
+
+@kernel
 def nearest_moved_apart(a, b, start, counts):
     """(parameters of the nearest points of two parts, of which one is moved away along a normal of
     one by as much as both are long: a start from which Newton's method is near a common normal; by
     which vector). They are looked for from `start` on."""
     q = middles_of(a, b)
     ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
-    n = ZERO
-    if a.side.own[leaf_ints(a.side, a.leaf) + S.DIM] == 2:
-        n = outward_normal(a.side, a.leaf, ja)
-    if b.side.own[leaf_ints(b.side, b.leaf) + S.DIM] == 2:
-        n = sub(n, outward_normal(b.side, b.leaf, jb))
+    n = sub(way_out(a.side, a.leaf, ja, q[0]), way_out(b.side, b.leaf, jb, q[2]))
     length = norm(n)
     far = ball_round(a)[1] + ball_round(b)[1] + norm(sub(jb[0], ja[0]))
     away = scale(far / length, n) if length > 0.0 else ZERO

@@ -165,6 +165,25 @@ def is_felt(kept, minima, o, d, asked, size):
 
 
 @kernel
+def goes_missing(kept, asked, best, minima):
+    """Was a place felt that is deeper than anything can have moved, and is no common normal as deep
+    among those that were found, along much the same direction?"""
+    step = jump_of(asked, best[SIZE])
+    for p in range(int(kept[F_PLACES])):
+        o = place_at(p)
+        if kept[o + P_FELT] == 0.0 or kept[o + P_DISTANCE] >= -step:
+            continue
+        missing, n = True, read_vector(kept, o + P_NORMAL)
+        for i in range(int(best[N_MINIMA])):
+            row = MINIMUM_REALS * i
+            if minima[row + BOUND] != NO_MINIMUM and minima[row] <= kept[o + P_DISTANCE] + step:
+                missing = missing and dot(n, normal_of(minima, row)) < ALIKE
+        if missing:
+            return True
+    return False
+
+
+@kernel
 def ended_deep(minima, sets, n, felt, kept, asked, size):
     """How many places that were felt have ended without coming to 0, and without one that is felt,
     as deep as they were, in their stead."""

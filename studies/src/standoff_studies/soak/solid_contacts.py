@@ -83,7 +83,7 @@ class Verdict:
 
 
 def falling(a: Any, b: Any, rng: np.random.Generator) -> Operator:
-    """B drawn to A from nearby, by a step that its contact is stable with."""
+    """B drawn to A from nearby."""
     way = rng.normal(size=3)
     way /= np.linalg.norm(way)
     size = 0.5 * (a.size + b.size)
@@ -101,7 +101,11 @@ def falling(a: Any, b: Any, rng: np.random.Generator) -> Operator:
     law = HuntCrossley(
         stiffness=mass.mass / depth**1.5, damping=0.5, friction=0.2, slip_speed=0.05, depth=depth
     )
-    system = System([RigidBody.fixed(a), free], law, gravity=-near.normal)
+    return with_step(System([RigidBody.fixed(a), free], law, gravity=-near.normal))
+
+
+def with_step(system: System) -> Operator:
+    """With a step that a contact is stable with."""
     step = FIRST_STEP
     for _ in range(HALVINGS):
         try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -145,7 +145,8 @@ def _outline(corners: Array, hole: float = 0.0) -> Outline:
     return Outline(pieces)
 
 
-def _swept(name: str, corners: Array, high: float, hole: float = 0.0) -> Part:
+def swept_part(name: str, corners: Array, high: float, hole: float = 0.0) -> Part:
+    """A polygon (n, 2) along z from 0 on, with a round hole unless its radius is 0."""
     truth = Swept(_outline(corners, hole), 0.0, high)
     return Part(name, swept(corners, 0.0, high, hole, name), truth)
 
@@ -161,6 +162,14 @@ def _chain(*corners: tuple[float, float]) -> list[Segment]:
     return polygon(*corners)[:-1]
 
 
+def turned_part(name: str, corners: Sequence[tuple[float, float]]) -> Part:
+    """A closed polygon (rho, z) about the axis z; it begins and ends there if it touches it."""
+    if corners[0][0] == 0.0:
+        return _turned(name, *_chain(*corners))
+    profile = Outline(polygon(*corners))
+    return Part(name, turned(profile, name), Turned(profile))
+
+
 def bolt(shank: float, head: float, under: float, top: float, name: str = "bolt") -> Part:
     """A shank from z = 0 to `under`, a wider head from there to `top`."""
     corners = ((0, 0), (shank, 0), (shank, under), (head, under), (head, top), (0, top))
@@ -169,20 +178,20 @@ def bolt(shank: float, head: float, under: float, top: float, name: str = "bolt"
 
 def plate(side: float, thick: float, hole: float) -> Part:
     """Square, with a round hole through it."""
-    return _swept("plate", square(0.5 * side), thick, hole)
+    return swept_part("plate", square(0.5 * side), thick, hole)
 
 
 def bracket(long: float, thick: float, deep: float) -> Part:
     """An angle: two legs of the same length, a reflex edge between them."""
     corners = [[0, 0], [long, 0], [long, thick], [thick, thick], [thick, long], [0, long]]
-    return _swept("bracket", np.array(corners, dtype=float), deep)
+    return swept_part("bracket", np.array(corners, dtype=float), deep)
 
 
 def channel(wide: float, tall: float, thick: float, deep: float) -> Part:
     """A U-profile with two reflex edges."""
     a, b, t = wide, tall, thick
     corners = [[0, 0], [a, 0], [a, b], [a - t, b], [a - t, t], [t, t], [t, b], [0, b]]
-    return _swept("channel", np.array(corners, dtype=float), deep)
+    return swept_part("channel", np.array(corners, dtype=float), deep)
 
 
 def ring(major: float, minor: float) -> Part:
@@ -244,13 +253,13 @@ def egg(semiaxes: tuple[float, float, float]) -> Part:
 
 def brick(wide: float, high: float) -> Part:
     """A convex prism of square section."""
-    return _swept("brick", square(0.5 * wide), high)
+    return swept_part("brick", square(0.5 * wide), high)
 
 
 def wedge() -> Part:
     """A prism with a notch, of sharp angles: convex edges of 14 and reflex ones of 20 degrees."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 0.125], [0.9, 0.3], [0.0, 0.3]])
-    return _swept("wedge", corners, 0.5)
+    return swept_part("wedge", corners, 0.5)
 
 
 def drum(radius: float, high: float) -> Part:
