@@ -54,7 +54,8 @@ from standoff.kernels.solids.spatial_progress import (
     middle,
 )
 from standoff.kernels.solids.spatial_search import node_ints
-from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
+from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY, HELD_SLOPE
+from standoff.kernels.solids.stationary import bends_up
 
 # What a row holds: leaves (-1 - node where it is a node), up to which motion it rests, what
 # Newton's method came to, and where; where it came to none, from where it began.
@@ -241,13 +242,14 @@ def begin_again(pa, pb, front, k, turn, best, counts):
 @kernel
 def held_for(a, b, q, away, turn):
     """Of the motion of B that could level the slope at a side of two leaves, as parts, at which
-    they are nearest moved apart by a vector, some, length; 0 where they are held at none. `turn`:
-    as of `rests_for`."""
+    they are nearest moved apart by a vector, some, length; 0 where they are held at none, or where
+    one is hollow, as a bore round a pin: it is nearest at its sides wherever both have a common
+    normal. `turn`: as of `rests_for`."""
     moved = S.Part(moved_side(b.side, away), b.leaf, b.box)
     sine, _, _ = steepest_side(a, moved, q, False)
     ja, jb = jets_at(a.side, a.leaf, moved.side, b.leaf, q)
     distance = norm(sub(jb[0], ja[0]))
-    if sine <= HELD_SLOPE or distance == 0.0:
+    if sine <= HELD_SLOPE or distance == 0.0 or not bends_up(ja, jb, FLAT_VALLEY):
         return 0.0
     return RESTS * sine / (1.0 / distance + turn)
 

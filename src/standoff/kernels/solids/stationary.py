@@ -99,6 +99,20 @@ def is_stationary(a, b, fans_a, fans_b, q, leaves, n, sine):
 
 
 @kernel
+def bends_up(ja, jb, spare):
+    """Does the square of the distance of two surfaces or curves bend upwards along all parameters,
+    where `spare` times the squared tangents is added to its second derivatives?"""
+    g, H, free, scales = reals_on_stack(4), reals_on_stack(16), reals_on_stack(4), reals_on_stack(4)
+    out = reals_on_stack(4)
+    fill_system(ja, jb, g, H)
+    for i in range(4):
+        tangent = ja[1 + i] if i < 2 else jb[i - 1]
+        scales[i] = dot(tangent, tangent)
+        free[i] = 1.0 if scales[i] > 0.0 else 0.0
+    return solved(H, g, free, spare, scales, out)
+
+
+@kernel
 def is_bowl(a, leaf_a, ja, b, leaf_b, jb, q, spare):
     """Does the square of the distance bend upwards along all parameters that no side holds, where
     `spare` times the squared tangents is added to its second derivatives? Below 0 it then grows
