@@ -34,6 +34,9 @@ AT_NORMALS = BEST_REALS
 AT_SETS = AT_NORMALS + MINIMUM_REALS * MOST_NORMALS
 AT_MERGED = AT_SETS + SET_REALS * (MOST_SETS + 4)
 CONTACT_ROOM = AT_MERGED + MERGED_REALS * MOST_MERGED
+# Of the length up to which places are looked for: how far B may move in the frames in one of which
+# Newton's method is tried again. Eight depths are that length in a simulation: half a depth.
+UNSEEN_FOR = 1.0 / 16.0
 
 
 class Choices(NamedTuple):
@@ -67,7 +70,10 @@ def contact_frame(both, kept, choices, room, counts):
     front.store[GONE] += step
     if front.store[GONE] > FARTHEST_GONE * best[SIZE]:
         front.store[N_ROWS], front.store[GONE] = 0.0, 0.0
-    find_contacts(both, front, radius, choices.retried, best, minima, counts)
+    retried = choices.retried
+    if step * retried > UNSEEN_FOR * best[ABOVE]:
+        retried = 1
+    find_contacts(both, front, radius, retried, best, minima, counts)
     lately = moved_lately(kept, step, choices.retried)
     asked = Asked(lately, best[ABOVE], choices.shared, choices.wider)
     if kept[F_MADE] == 0.0:
