@@ -23,9 +23,11 @@ from standoff.kernels.solids.contact_minimum import (
     nearest_moved_apart,
 )
 from standoff.kernels.solids.contact_search import (
+    bends_apart,
     follow_signed,
     is_vertex,
     keep_signed,
+    normal_from,
     normal_in_leaves,
     rests_for,
 )
@@ -54,8 +56,7 @@ from standoff.kernels.solids.spatial_progress import (
     middle,
 )
 from standoff.kernels.solids.spatial_search import node_ints
-from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY, HELD_SLOPE
-from standoff.kernels.solids.stationary import bends_up
+from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
 
 # What a row holds: leaves (-1 - node where it is a node), up to which motion it rests, what
 # Newton's method came to, and where; where it came to none, from where it began.
@@ -230,7 +231,7 @@ def begin_again(pa, pb, front, k, turn, best, counts):
     tried = r[o + C_TOLD] in (CAME_TO_NONE, HELD)
     first = place_of(r, o) if tried else middles_of(pa, pb)
     start, away = nearest_moved_apart(pa, pb, first, counts)
-    found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
+    found, q, n, d = normal_from(pa, pb, start, away, best, counts)
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
     free = 0.0 if found else held_for(pa, pb, start, away, turn)
@@ -249,7 +250,7 @@ def held_for(a, b, q, away, turn):
     sine, _, _ = steepest_side(a, moved, q, False)
     ja, jb = jets_at(a.side, a.leaf, moved.side, b.leaf, q)
     distance = norm(sub(jb[0], ja[0]))
-    if sine <= HELD_SLOPE or distance == 0.0 or not bends_up(ja, jb, FLAT_VALLEY):
+    if sine <= HELD_SLOPE or distance == 0.0 or not bends_apart(a, b, q, away):
         return 0.0
     return RESTS * sine / (1.0 / distance + turn)
 
