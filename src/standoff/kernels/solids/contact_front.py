@@ -20,14 +20,12 @@ from standoff.kernels.solids.contact_ends import keep_end
 from standoff.kernels.solids.contact_minimum import (
     middles_of,
     moved_side,
-    nearest_moved_apart,
+    start_of,
 )
 from standoff.kernels.solids.contact_search import (
-    bends_apart,
     follow_signed,
     is_vertex,
     keep_signed,
-    normal_from,
     normal_in_leaves,
     rests_for,
 )
@@ -230,11 +228,11 @@ def begin_again(pa, pb, front, k, turn, best, counts):
     o, r = CONTACT_REALS * k, front.rows
     tried = r[o + C_TOLD] in (CAME_TO_NONE, HELD)
     first = place_of(r, o) if tried else middles_of(pa, pb)
-    start, away = nearest_moved_apart(pa, pb, first, counts)
-    found, q, n, d = normal_from(pa, pb, start, away, best, counts)
+    start, away, nearest = start_of(pa, pb, first, counts)
+    found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
-    free = 0.0 if found else held_for(pa, pb, start, away, turn)
+    free = 0.0 if found or not nearest else held_for(pa, pb, start, away, turn)
     if free > 0.0:
         r[o + C_TOLD], r[o + C_REST] = HELD, front.store[GONE] + free
     return found, q, n, d
@@ -243,14 +241,13 @@ def begin_again(pa, pb, front, k, turn, best, counts):
 @kernel
 def held_for(a, b, q, away, turn):
     """Of the motion of B that could level the slope at a side of two leaves, as parts, at which
-    they are nearest moved apart by a vector, some, length; 0 where they are held at none, or where
-    one is hollow, as a bore round a pin: it is nearest at its sides wherever both have a common
-    normal. `turn`: as of `rests_for`."""
+    they are nearest moved apart by a vector, some, length; 0 where they are held at none. `turn`:
+    as of `rests_for`."""
     moved = S.Part(moved_side(b.side, away), b.leaf, b.box)
     sine, _, _ = steepest_side(a, moved, q, False)
     ja, jb = jets_at(a.side, a.leaf, moved.side, b.leaf, q)
     distance = norm(sub(jb[0], ja[0]))
-    if sine <= HELD_SLOPE or distance == 0.0 or not bends_apart(a, b, q, away):
+    if sine <= HELD_SLOPE or distance == 0.0:
         return 0.0
     return RESTS * sine / (1.0 / distance + turn)
 

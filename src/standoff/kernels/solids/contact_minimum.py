@@ -24,7 +24,7 @@ from standoff.kernels.pair.contact_newton import (
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.hollow import beside_edge, is_hollow
 from standoff.kernels.solids.spatial_minimum import jets_at, nearest
-from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, outward_normal
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, leaf_jet, outward_normal
 from standoff.kernels.solids.spatial_progress import ball_round, middle
 from standoff.kernels.solids.spatial_tolerances import (
     CONTACT_ERROR,
@@ -34,6 +34,7 @@ from standoff.kernels.solids.spatial_tolerances import (
     PARALLEL_EDGES,
     SURE_NORMAL,
 )
+from standoff.kernels.solids.stationary import bends_up
 from standoff.kernels.tolerances import CONTACT_STEPS
 from standoff.kernels.values import Pose
 
@@ -91,10 +92,13 @@ def way_out(side, leaf, jet, u):
 
 
 @kernel
-def nearest_moved_apart(a, b, start, counts):
-    """(parameters of the nearest points of two parts, of which one is moved away along a normal of
-    one by as much as both are long: a start from which Newton's method is near a common normal; by
-    which vector). They are looked for from `start` on."""
+def start_of(a, b, first, counts):
+    """(parameters from which Newton's method may come to a common normal of two parts, the vector
+    by which B was moved away for it, whether they are nearest there): along a normal of one, by as
+    much as both are long, from `first` on.
+
+    Where one is hollow, as a bore round a pin, they are nearest at their sides wherever both have a
+    common normal; it is then looked for from their middles."""
     q = middles_of(a, b)
     ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
     n = sub(way_out(a.side, a.leaf, ja, q[0]), way_out(b.side, b.leaf, jb, q[2]))
@@ -102,7 +106,10 @@ def nearest_moved_apart(a, b, start, counts):
     far = ball_round(a)[1] + ball_round(b)[1] + norm(sub(jb[0], ja[0]))
     away = scale(far / length, n) if length > 0.0 else ZERO
     moved = moved_side(b.side, away)
-    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, start, counts)[0], away
+    jm = leaf_jet(moved, b.leaf, q[2], q[3])
+    if length > 0.0 and not bends_up(ja, jm, FLAT_VALLEY):
+        return q, away, False
+    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, first, counts)[0], away, True
 
 
 @shared

@@ -16,9 +16,8 @@ from standoff.kernels.solids.contact_minimum import (
     is_signed_minimum,
     limits_of,
     middles_of,
-    moved_side,
-    nearest_moved_apart,
     signed_minimum,
+    start_of,
 )
 from standoff.kernels.solids.contact_sets import NO_MINIMUM, put_normal
 from standoff.kernels.solids.front_branches import (
@@ -52,8 +51,8 @@ from standoff.kernels.solids.spatial_progress import (
     evaluations,
 )
 from standoff.kernels.solids.spatial_search import node_ints
-from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY, NEARLY_OPPOSED, PAST_SIDE
-from standoff.kernels.solids.stationary import bends_up, is_stationary
+from standoff.kernels.solids.spatial_tolerances import NEARLY_OPPOSED, PAST_SIDE
+from standoff.kernels.solids.stationary import is_stationary
 
 # Widths of a leaf by which Newton's method may leave it on its way, and end outside of it.
 ASTRAY, ENDS_BEYOND = 1.0, PAST_SIDE
@@ -178,33 +177,14 @@ def normal_in_leaves(a, b, q, best, counts):
 
 
 @kernel
-def normal_from(a, b, start, away, best, counts):
-    """As `normal_in_leaves`, from where two parts are nearest, moved apart by a vector; where one
-    is hollow, as a bore round a pin, that is at their sides, and their middles may be nearer to a
-    common normal."""
-    found, q, n, d = normal_in_leaves(a, b, start, best, counts)
-    if not found and not bends_apart(a, b, start, away):
-        return normal_in_leaves(a, b, middles_of(a, b), best, counts)
-    return found, q, n, d
-
-
-@kernel
-def bends_apart(a, b, q, away):
-    """Does the square of the distance of two parts, moved apart by a vector, bend upwards along all
-    parameters?"""
-    ja, jb = jets_at(a.side, a.leaf, moved_side(b.side, away), b.leaf, q)
-    return bends_up(ja, jb, FLAT_VALLEY)
-
-
-@kernel
 def look_in_leaves(a, leaf_a, b, leaf_b, fans, best, minima, counts):
     """Newton's method in a pair of leaves, from where they are nearest moved apart."""
     counts[LEAF_PAIRS] += 1
     pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
     if rests_for(pa, pb, 0.0, best) > 0.0:
         return
-    q, away = nearest_moved_apart(pa, pb, middles_of(pa, pb), counts)
-    found, q, n, d = normal_from(pa, pb, q, away, best, counts)
+    q, _, _ = start_of(pa, pb, middles_of(pa, pb), counts)
+    found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
     if found:
         keep_signed(a, b, fans, (leaf_a, leaf_b), (q, n, d), best[ABOVE], best, minima)
 
