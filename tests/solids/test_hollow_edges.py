@@ -13,6 +13,7 @@ from standoff.bodies import Edge, Face
 from standoff.geometry import Line, Plane
 from standoff.solids import Solid, distance
 from standoff.tracking.status import Status
+from standoff_studies.soak import solid_parts
 
 STILL = so.Pose.identity()
 BRACKET = Solid.from_brep(*prism([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], 2.0))
@@ -143,3 +144,74 @@ def test_what_stands_before_a_convex_edge_is_not_pressed() -> None:
     contact = operator.run(operator.start(), 1, 1).final.contact(0)
     assert min(place.distance for place in contact.places) == pytest.approx(0.075 * np.sqrt(2.0))
     assert contact.spots == ()
+
+
+LONG = Solid(so.shapes.box((1.0, 1.0, 4.0)))
+
+
+@pytest.mark.parametrize("over", [(1e-4, 1e-4), (1e-4, 3e-4), (-1e-4, 2e-4), (2e-4, -1e-4)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_an_edge_that_reaches_past_both_ends_of_a_hollow_edge(
+    over: tuple[float, float], turned: bool
+) -> None:
+    """It is held at both ends, by what it is past: one wall or two."""
+    solids, poses = (BRACKET, LONG), (STILL, at(1.5 - over[0], 1.5 - over[1], 1.0))
+    if turned:
+        solids, poses = solids[::-1], poses[::-1]
+    found = distance(*solids, *poses, minima=1e-3)
+    past = np.maximum(over, 0.0)
+    depth, way = np.linalg.norm(past), past / np.linalg.norm(past)
+    held = [m for m in found.minima if abs(m.distance + depth) < 1e-12]
+    if min(over) > 0.0:
+        held = [m for m in held if {m.feature_a.kind, m.feature_b.kind} == {"vertex", "edge"}]
+        assert sorted(round(float(m.point_a[2])) for m in held) == [0, 2]
+    assert held
+    for place in held:
+        normal = -place.normal if turned else place.normal
+        assert normal == pytest.approx([*way, 0.0], abs=1e-9)
+
+
+def test_a_tilted_edge_is_held_where_it_is_deepest() -> None:
+    """Of both ends of the hollow edge at the one that the edge is farther past."""
+    past = np.array([2e-4, 1e-4])
+    for tilt in (1e-4, -1e-4):
+        pose = so.Pose.exp([0.0, tilt, 0.0], [1.5 - past[0], 1.5 - past[1], 1.0])
+        found = distance(BRACKET, LONG, STILL, pose, minima=2e-3)
+        [place] = [m for m in found.minima if "vertex" in (m.feature_a.kind, m.feature_b.kind)]
+        end = 0.0 if tilt > 0.0 else 2.0
+        assert place.point_a == pytest.approx([1.0, 1.0, end], abs=1e-9)
+        there = np.hypot(past[0] + 1e-4, past[1])
+        assert place.distance == pytest.approx(-there, rel=1e-3)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 2.0, 4.0])
+def test_a_rim_past_a_hollow_rim(angle: float) -> None:
+    """A round peg at the bottom of a wider blind hole, past its wall and its floor."""
+    corners = ((0, 0), (0.5, 0), (0.5, 1), (1, 1), (1, -1), (0, -1))
+    hole = Solid(solid_parts.turned_part("hole", corners).boundary)
+    peg = Solid(solid_parts.drum(0.45, 2.0).boundary)
+    out = np.array([np.cos(angle), np.sin(angle), 0.0])
+    for past in ([1e-4, 2e-4], [3e-4, 1e-4]):
+        place = (0.05 + past[0]) * out - [0.0, 0.0, past[1]]
+        found = distance(hole, peg, STILL, at(*place), minima=1e-3)
+        [rim] = [m for m in found.minima if m.feature_a.kind == m.feature_b.kind == "edge"]
+        assert rim.distance == pytest.approx(-np.hypot(*past), abs=1e-10)
+        way = (past[1] * np.array([0.0, 0.0, 1.0]) - past[0] * out) / np.hypot(*past)
+        assert rim.normal == pytest.approx(way, abs=1e-6)
+
+
+def test_a_long_box_that_is_pressed_into_a_short_corner_stays_there() -> None:
+    """Without the places at the ends of the hollow edge it fell through the floor."""
+    law = sim.HuntCrossley(stiffness=1e6, depth=1e-4, damping=0.5)
+    inertia = np.diag([17.0, 17.0, 2.0]) / 12.0
+    over = at(1.5 + 1e-4, 1.5 + 1e-4, 1.0)
+    box = sim.RigidBody.free(LONG, mass=1.0, inertia=inertia, pose=over)
+    system = sim.System([sim.RigidBody.fixed(BRACKET), box], law, gravity=[-0.3, -1.0, 0.0])
+    operator = sim.Operator(system, 1e-4)
+    run = operator.run(operator.start(), 5000, 500)
+    moved = run.final.pose(1)
+    for end in (-1.0, 1.0):
+        corner = moved.translation + moved.rotation @ [-0.5, -0.5, end]
+        assert np.abs(corner[:2] - 1.0).max() < 5e-4
+    assert run.uncertified == run.jumps == 0
+    assert run.deepest < 5e-4

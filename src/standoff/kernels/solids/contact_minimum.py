@@ -47,18 +47,35 @@ FREE_STEPS, MAY_GROW = 3, 10.0
 # Where the matrix is singular, each step makes the error as much less: parallel features have a
 # common normal, and others that are straight, as a ruling and a plane, have none.
 SHRINKS = 0.3
+# Of two edges: steps towards where one is level with the way out of the other, a hollow one; parts
+# of their leaves within which that is near enough, and by which the change of that way is told.
+LEVEL_STEPS, LEVEL_ENOUGH, SLOPE_STEP = 8, 1e-6, 1e-3
 
 
 @kernel
-def first_normal(a, leaf_a, ja, b, leaf_b, jb, size):
+def way_out(side, leaf, jet, u):
+    """Of a face its outward normal, A's frame; of a hollow edge the sum of both beside it."""
+    if side.own[leaf_ints(side, leaf) + S.DIM] == 2:
+        return outward_normal(side, leaf, jet)
+    if not is_hollow(side, leaf):
+        return ZERO
+    beside = add(beside_edge(side, leaf, u, 0), beside_edge(side, leaf, u, 1))
+    return rotate(side.pose.R, beside)
+
+
+@kernel
+def first_normal(a, leaf_a, ja, b, leaf_b, jb, q, size):
     """A unit normal from A to B of two features at a pair of their points, in A's frame; of two
-    edges one of the two; 0 where they have none, as parallel edges that touch."""
+    edges one of the two; 0 where they have none, as parallel edges that touch. At a hollow edge, of
+    another edge that has gone past it, midway between the faces beside it."""
     if a.own[leaf_ints(a, leaf_a) + S.DIM] == 2:
         return outward_normal(a, leaf_a, ja)
     if b.own[leaf_ints(b, leaf_b) + S.DIM] == 2:
         return scale(-1.0, outward_normal(b, leaf_b, jb))
     n = cross(ja[1], jb[1])
     area = norm(n)
+    if norm(ja[1]) > 0.0 and norm(jb[1]) > 0.0 and (is_hollow(a, leaf_a) or is_hollow(b, leaf_b)):
+        return unit(sub(way_out(a, leaf_a, ja, q[0]), way_out(b, leaf_b, jb, q[2])))
     if area > PARALLEL_EDGES * norm(ja[1]) * norm(jb[1]):
         return scale(1.0 / area, n)
     delta = sub(jb[0], ja[0])
@@ -81,14 +98,32 @@ def middles_of(a, b):
 
 
 @kernel
-def way_out(side, leaf, jet, u):
-    """Of a face its outward normal, A's frame; of a hollow edge the sum of both beside it."""
-    if side.own[leaf_ints(side, leaf) + S.DIM] == 2:
-        return outward_normal(side, leaf, jet)
-    if not is_hollow(side, leaf):
-        return ZERO
-    beside = add(beside_edge(side, leaf, u, 0), beside_edge(side, leaf, u, 1))
-    return rotate(side.pose.R, beside)
+def across_way_out(hollow, edge, s, t):
+    """(parameter of a hollow edge, of another edge), both as parts: where the other one is level
+    with the way out of the hollow one, at the foot of that point. There it has gone farthest past
+    it."""
+    h, e = hollow, edge
+    step_s, step_t = h.box.u1 - h.box.u0, e.box.u1 - e.box.u0
+    low = h.box.u0 - step_s, e.box.u0 - step_t
+    high = h.box.u1 + step_s, e.box.u1 + step_t
+    small = SLOPE_STEP * step_s
+    for _ in range(LEVEL_STEPS):
+        x, y = leaf_jet(h.side, h.leaf, s, 0.0), leaf_jet(e.side, e.leaf, t, 0.0)
+        way, delta = way_out(h.side, h.leaf, x, s), sub(y[0], x[0])
+        ahead = way_out(h.side, h.leaf, leaf_jet(h.side, h.leaf, s + small, 0.0), s + small)
+        foot, level = dot(delta, x[1]), dot(way, y[1])
+        foot_s, foot_t = dot(delta, x[3]) - dot(x[1], x[1]), dot(y[1], x[1])
+        level_s, level_t = dot(sub(ahead, way), y[1]) / small, dot(way, y[3])
+        det = foot_s * level_t - foot_t * level_s
+        if det == 0.0:
+            break
+        ds = (foot * level_t - foot_t * level) / det
+        dt = (foot_s * level - foot * level_s) / det
+        s = min(max(s - ds, low[0]), high[0])
+        t = min(max(t - dt, low[1]), high[1])
+        if abs(ds) <= LEVEL_ENOUGH * step_s and abs(dt) <= LEVEL_ENOUGH * step_t:
+            break
+    return s, t
 
 
 @kernel
@@ -101,6 +136,13 @@ def start_of(a, b, first, counts):
     common normal; it is then looked for from their middles."""
     q = middles_of(a, b)
     ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
+    if norm(ja[1]) > 0.0 and norm(jb[1]) > 0.0:
+        if is_hollow(a.side, a.leaf):
+            s, t = across_way_out(a, b, q[0], q[2])
+            return (s, q[1], t, q[3]), ZERO, False
+        if is_hollow(b.side, b.leaf):
+            s, t = across_way_out(b, a, q[2], q[0])
+            return (t, q[1], s, q[3]), ZERO, False
     n = sub(way_out(a.side, a.leaf, ja, q[0]), way_out(b.side, b.leaf, jb, q[2]))
     length = norm(n)
     far = ball_round(a)[1] + ball_round(b)[1] + norm(sub(jb[0], ja[0]))
@@ -118,7 +160,7 @@ def signed_minimum(a, leaf_a, b, leaf_b, q, span, limits, counts):
     `q` on. `span` makes the form dimensionless, length; it ends where it leaves `limits`, a least
     and a greatest value of each parameter."""
     ja, jb = jets_at(a, leaf_a, b, leaf_b, q)
-    n = first_normal(a, leaf_a, ja, b, leaf_b, jb, span)
+    n = first_normal(a, leaf_a, ja, b, leaf_b, jb, q, span)
     d = dot(n, sub(jb[0], ja[0]))
     if norm(n) < 0.5:
         return False, q, n, d
