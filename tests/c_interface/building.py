@@ -1,7 +1,7 @@
-"""The library that tests link with: ``python tests/c_interface/building.py FOLDER`` builds it ahead.
+"""The library that tests link with; ``python tests/c_interface/building.py FOLDER`` builds it.
 
-`.ci/run` does so while kernels are compiled, on a core that would be idle, and names the folder to
-the tests.
+`.ci/run` does so ahead, on a core that would be idle while kernels are compiled, and names the
+folder to the tests.
 """
 
 import os
