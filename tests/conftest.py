@@ -119,14 +119,15 @@ def place(nodeid: str) -> int:
 
 
 class ByFile(LoadFileScheduling):  # type: ignore[misc]
-    """A file in one process, as by `--dist loadfile`, and those that share a run, too.
+    """A file in one process, as by `--dist loadfile`, and those that share what takes long, too.
 
     Where the longest came last, one core would wait for it.
     """
 
     def _split_scope(self, nodeid: str) -> str:
         file = nodeid.partition("::")[0]
-        return TOGETHER[0] if file.removeprefix(f"{TESTS.name}/") in TOGETHER else file
+        name = file.removeprefix(f"{TESTS.name}/")
+        return next((group[0] for group in TOGETHER if name in group), file)
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> ByFile | None:

@@ -22,7 +22,7 @@ PARTS = (
 )
 
 
-@pytest.mark.parametrize("names", [FAST, LONG, TOGETHER], ids=["fast", "long", "together"])
+@pytest.mark.parametrize("names", [FAST, LONG, sum(TOGETHER, ())], ids=["fast", "long", "together"])
 def test_every_file_is_there_once(names: tuple[str, ...]) -> None:
     assert [name for name in names if not (TESTS / name).is_file()] == []
     assert len(set(names)) == len(names)
@@ -91,9 +91,16 @@ def test_long_files_begin_first(collected: Any) -> None:
     assert found == [LONG[0], LONG[1], "test_errors.py", "test_limits.py"]
 
 
-def test_files_that_share_a_run_are_one_piece_of_work(request: pytest.FixtureRequest) -> None:
+def test_files_that_share_what_takes_long_are_one_piece_of_work(
+    request: pytest.FixtureRequest,
+) -> None:
     here = request.config.pluginmanager.get_plugin(str(TESTS / "conftest.py"))
-    pieces = {here.ByFile._split_scope(None, f"tests/{name}::test_it") for name in TOGETHER}
-    assert pieces == {TOGETHER[0]}
-    apart = [here.ByFile._split_scope(None, f"tests/{name}::test_it") for name in FAST]
-    assert apart == [f"tests/{name}" for name in FAST]
+    assert here is not None
+
+    def pieces(names: tuple[str, ...]) -> list[str]:
+        return [here.ByFile._split_scope(None, f"tests/{name}::test_it") for name in names]
+
+    together = [{*pieces(group)} for group in TOGETHER]
+    assert all(len(group) == 1 for group in together)
+    assert len(set.union(*together)) == len(TOGETHER)
+    assert pieces(FAST) == [f"tests/{name}" for name in FAST]

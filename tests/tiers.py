@@ -57,7 +57,7 @@ FAST = (
     "tracking/test_pair_system.py",
 )
 
-TOGETHER = (
+SHARED_RUNS = (
     "paper/test_broken_on_purpose.py",
     "paper/test_claims.py",
     "paper/test_resets.py",
@@ -69,9 +69,15 @@ TOGETHER = (
 )
 """Files that look at the same runs of simulations, which take long and are kept in a process."""
 
+SHARED_LIBRARY = ("c_interface/test_c_interface.py", "c_interface/test_solids.py")
+"""Files whose programs link with the C library, which takes two minutes to build."""
+
+TOGETHER = (SHARED_RUNS, SHARED_LIBRARY)
+"""Files that one process runs: what they share is made once."""
+
 LONG = (
-    *TOGETHER,
-    "c_interface/test_c_interface.py",
+    *SHARED_RUNS,
+    *SHARED_LIBRARY,
     "test_docs.py",
     "soak/test_soak_command.py",
     "solids/test_rounded_beside_solids.py",

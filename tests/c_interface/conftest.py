@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from standoff.c_interface import build_library
+from c_interface.building import put_library
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK
 
@@ -24,8 +24,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Path:
     if not modules.AVAILABLE or BOUNDS_CHECK:
         pytest.skip("the C library is made of kernels as this version of Numba compiles them")
     folder = tmp_path_factory.mktemp("c library")
-    with (folder / "progress").open("w") as told:
-        build_library(folder, progress=lambda done, total: print(done, total, file=told))
+    put_library(folder)
     return folder
 
 

@@ -55,6 +55,18 @@ def excess(bounds: PatchBounds, surface: Any, rectangle: np.ndarray) -> tuple[fl
     return box, cone, curvature if inside else -1.0
 
 
+@pytest.mark.parametrize("name", KINDS)
+def test_cones_alone_are_those_of_all_bounds(name: str) -> None:
+    for seed, width in ((3, 0.05), (4, 0.7)):
+        surface, _ = drawn(name, seed, width)
+        rng = np.random.default_rng(seed)
+        rectangles = np.array([part(KINDS[name].domain, width, rng) for _ in range(4)])
+        whole = surface.bounds(rectangles)
+        axis, angle = surface.normal_cones(rectangles)
+        np.testing.assert_array_equal(axis, whole.axis)
+        np.testing.assert_array_equal(angle, whole.angle)
+
+
 def test_every_class_of_surface_is_here() -> None:
     classes = {each for name in g.__all__ if isclass(each := getattr(g, name))}
     every = {each for each in classes if issubclass(each, g.Surface) and not isabstract(each)}

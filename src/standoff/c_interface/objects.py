@@ -23,6 +23,7 @@ from standoff.c_interface.pair_file import SMOOTH_FRAMES
 from standoff.errors import StandoffError
 from standoff.kernels.compiler import modules
 from standoff.kernels.compiler.decorators import BOUNDS_CHECK, CONTRACTED
+from standoff.kernels.compiler.entry import uncollected
 from standoff.kernels.entries import c_interface as kernels
 from standoff.kernels.entries import laws, paper_laws, solid_frame
 from standoff.progress import Progress
@@ -101,7 +102,8 @@ def hidden(code: llvm.ModuleRef, renamed: dict[str, str]) -> llvm.ModuleRef:
 
 def write(folder: Path, progress: Progress = lambda done, total: None) -> None:
     """Compile all that the library calls and write it to a folder, one object file per module."""
-    renamed, libraries = compiled_libraries(progress)
+    with uncollected():
+        renamed, libraries = compiled_libraries(progress)
     machine = relocatable_machine(libraries[0]._codegen)
     files = {}
     for number, library in enumerate(libraries):

@@ -72,17 +72,24 @@ class Rotational(Surface):
             held = Interval(np.minimum(first.lo, last.lo), np.maximum(first.hi, last.hi))
             return held + mapped(directions, interval(self.shift[:, None]))
 
+    def cones_over(self, boxes: Boxes) -> tuple[Array, Array]:
+        """Cones of normals."""
+        from standoff.geometry.rotational_bounds import turned_normals
+
+        u, v = boxes.sides
+        with np.errstate(all="ignore"):
+            return turned_normals(self.linear, u, self.meridian_normals(v))
+
     def bounds_over(self, boxes: Boxes) -> PatchBounds:
         """Boxes, cones of normals and curvatures."""
         from standoff.geometry.jet_bounds import widened
         from standoff.geometry.patch_bounds import PatchBounds
-        from standoff.geometry.rotational_bounds import Bends, turned_curvatures, turned_normals
+        from standoff.geometry.rotational_bounds import Bends, turned_curvatures
 
         u, v = boxes.sides
         extents = self.extents_over(boxes, np.eye(3)[..., None])
         with np.errstate(all="ignore"):
             bends = Bends(self.meridian(v)[:, 1], *self.speed_and_bend(v), self.over_radius(v))
-            axis, angle = turned_normals(self.linear, u, self.meridian_normals(v))
             least, greatest = turned_curvatures(self.linear, u, bends)
         reach = np.linalg.norm(self.shift)
-        return PatchBounds(*widened(extents, reach), axis, angle, least, greatest)
+        return PatchBounds(*widened(extents, reach), *self.cones_over(boxes), least, greatest)

@@ -103,6 +103,11 @@ class SuperellipsoidPole(Surface):
 
         return superellipsoid_bounds(self, boxes)
 
+    def cones_over(self, boxes: Boxes) -> tuple[Array, Array]:
+        """Those of `bounds_over`, which knows more than the jets."""
+        found = self.bounds_over(boxes)
+        return found.axis, found.angle
+
     def highest(self, direction: Array) -> None:
         return None
 

@@ -77,7 +77,7 @@ def face_leaves(
         waiting, cuts = _on_it(boundary, chart, waiting, pieces, own)
         if not len(waiting):
             break
-        bounds = chart.surface.bounds(waiting)
+        axes, angles = chart.surface.normal_cones(waiting)
         d = surface_derivatives(chart.surface, waiting)
         wide = np.stack([d[:, 0] * (waiting[:, 1] - waiting[:, 0]),
                          d[:, 1] * (waiting[:, 3] - waiting[:, 2])])  # fmt: skip
@@ -86,18 +86,18 @@ def face_leaves(
         if chart.surface.kind == L.PLANE:
             longest[:] = LONGEST_PLANE
         too_long = wide.max(axis=0) > longest * size
-        split = (bounds.angle > WIDEST) | too_long
+        split = (angles > WIDEST) | too_long
         if depth == MOST_HALVINGS:
             split[:] = False
         kept = np.flatnonzero(~split)
         for k, box in zip(kept, _face_boxes(chart, waiting[kept]), strict=True):
-            cone = _face_cone(chart, bounds.axis[k], float(bounds.angle[k]))
+            cone = _face_cone(chart, axes[k], float(angles[k]))
             reals = _leaf_reals(waiting[k], d[k], cone, natural[1])
             found.append(
                 Leaf(2, chart.face, chart.number, len(cuts[k]) > 0, S.OUTSIDE | S.INSIDE,
                      cuts[k], natural[0], reals, *box)
             )  # fmt: skip
-        by_u = _bends_along_u(d, waiting, wide, bounds.angle > WIDEST)
+        by_u = _bends_along_u(d, waiting, wide, angles > WIDEST)
         waiting = _halves(waiting[split], by_u[split])
     return found
 
@@ -321,13 +321,10 @@ def edge_cones(
 def _normal_cones(chart: FaceChart, rows: Array) -> list[Cone]:
     """Of a chart's outward normals over rectangles; unknown ones where it has no bounds."""
     try:
-        bounds = chart.surface.bounds(rows)
+        axes, angles = chart.surface.normal_cones(rows)
     except ValueError:
         return [(np.array([0.0, 0.0, 1.0]), UNKNOWN)] * len(rows)
-    return [
-        (chart.outward * axis, float(angle))
-        for axis, angle in zip(bounds.axis, bounds.angle, strict=True)
-    ]
+    return [(chart.outward * axis, float(angle)) for axis, angle in zip(axes, angles, strict=True)]
 
 
 def _cone_round(cones: list[Cone]) -> Cone:
