@@ -30,8 +30,10 @@ from standoff.kernels.solids.spatial_tolerances import (
     CONTACT_ERROR,
     CONTACT_ROUNDED,
     FLAT_VALLEY,
+    LEVEL_ENOUGH,
     NEARLY_LEVEL,
     PARALLEL_EDGES,
+    SLOPE_STEP,
     SURE_NORMAL,
 )
 from standoff.kernels.solids.stationary import bends_up
@@ -47,9 +49,8 @@ FREE_STEPS, MAY_GROW = 3, 10.0
 # Where the matrix is singular, each step makes the error as much less: parallel features have a
 # common normal, and others that are straight, as a ruling and a plane, have none.
 SHRINKS = 0.3
-# Of two edges: steps towards where one is level with the way out of the other, a hollow one; parts
-# of their leaves within which that is near enough, and by which the change of that way is told.
-LEVEL_STEPS, LEVEL_ENOUGH, SLOPE_STEP = 8, 1e-6, 1e-3
+# Of two edges: steps towards where one is level with the way out of the other, a hollow one.
+LEVEL_STEPS = 8
 
 
 @kernel

@@ -86,6 +86,12 @@ CONTACT_ROUNDED: Final = 1e-15
 """The same, where no step makes it less: some roundings."""
 PARALLEL_EDGES: Final = 1e-5
 """Sine: edges at a smaller angle have no common normal of their own; `PIVOT` is its square."""
+LEVEL_ENOUGH: Final = 1e-6
+"""Of the length of an edge's leaf: steps to where it is level with the way out of a hollow edge end
+below; Newton's method goes on from there."""
+SLOPE_STEP: Final = 1e-3
+"""Of the length of a hollow edge's leaf, by which the change of the way out of it is told: a start
+of Newton's method needs no more digits."""
 FELT_SPARE: Final = 1e-6
 """Of the sizes: by how much the signed distance of a place may jump beyond its motion where it goes
 from one feature to the next, and how deep one may be born."""

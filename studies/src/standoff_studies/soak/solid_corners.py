@@ -111,9 +111,9 @@ def angle(rng: np.random.Generator) -> Case:
     half = 0.5 * np.radians(rng.uniform(50.0, 150.0))
     long, thick = rng.uniform(0.8, 1.5), 0.3
     walls = [np.array([np.sin(half), np.cos(half)]), np.array([-np.sin(half), np.cos(half)])]
-    back = -thick / np.sin(half)
+    back = np.array([0.0, -thick / np.sin(half)])
     corners = [long * walls[1], np.zeros(2), long * walls[0]]
-    corners += [long * walls[0] + [0.0, back], [0.0, back], long * walls[1] + [0.0, back]]
+    corners += [long * walls[0] + back, back, long * walls[1] + back]
     high = rng.uniform(0.3, 1.5)
     fixed = solid_parts.swept_part("angle", np.array(corners)[::-1], high)
     wide = rng.uniform(0.2, 0.7, size=2)
@@ -129,8 +129,8 @@ def channel(rng: np.random.Generator) -> Case:
     thick, wide, high = 0.2, rng.uniform(0.3, 0.8), rng.uniform(0.3, 1.2)
     a, b = wide + 2.0 * thick, 0.8
     t = thick
-    corners = [[0, 0], [a, 0], [a, b], [a - t, b], [a - t, t], [t, t], [t, b], [0, b]]
-    fixed = solid_parts.swept_part("channel", np.array(corners), high)
+    corners = [(0, 0), (a, 0), (a, b), (a - t, b), (a - t, t), (t, t), (t, b), (0, b)]
+    fixed = solid_parts.swept_part("channel", np.array(corners, dtype=float), high)
     play = rng.choice([1e-3, 1e-2, 0.2]) * wide
     tall = rng.choice([0.5, 1.5]) * high
     inner = wide - play
