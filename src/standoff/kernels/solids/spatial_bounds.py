@@ -327,7 +327,7 @@ def proven(phi, sign, most, part, q, limit, counts):
     data = (known and phi.kind == AXIS_OF, centre, first, other, along)
     stack = reals_on_stack(248)
     stack[0], stack[1], stack[2], stack[3] = box.u0, box.u1, box.v0, box.v1
-    count, rounds = 1, 0
+    count, rounds, begun = 1, 0, counts[0]
     while count > 0:
         count -= 1
         n = 4 * count
@@ -338,6 +338,8 @@ def proven(phi, sign, most, part, q, limit, counts):
         if told > 0:
             continue
         if told < 0 or rounds > limit or count >= MOST_WAITING:
+            return False
+        if counts[0] - begun > MOST_PARTS + limit:
             return False
         wide_u = m[o + S.FIRST] * (b.u1 - b.u0)
         wide_v = m[o + S.FIRST + 1] * (b.v1 - b.v0)
