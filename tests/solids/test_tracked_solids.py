@@ -26,7 +26,7 @@ PAIRS = {
 }
 
 
-LITTLE, ONE_LOOK = 150, 500
+LITTLE, ONE_LOOK = 30, 100
 """Evaluations of a frame, and those by which the last look at a pair of pieces may exceed them."""
 
 
@@ -288,7 +288,7 @@ def test_with_little_time_frames_go_on_all_the_same() -> None:
 def test_no_frame_takes_much_longer_than_it_may_and_all_are_true(name: str) -> None:
     """Near each other, with time for a part of each frame: rows are left open again and again."""
     a, b = PAIRS[name]
-    poses = wandering(a, b, 150, 1e-3, np.random.default_rng(11), 2e-3)
+    poses = wandering(a, b, 100, 4e-3, np.random.default_rng(11), 2e-3)
     hasty, full = SolidTracker(a, b, deadline=LITTLE), SolidTracker(a, b)
     state = full.start(STILL, poses[0])
     _, answers = hasty.run(state, STILL, poses[1:])
