@@ -34,7 +34,6 @@ from standoff.kernels.solids.front_frame import (
     rounding_of,
 )
 from standoff.kernels.solids.front_rows import (
-    APART_TO,
     FRAME,
     GONE,
     N_MERGED,
@@ -160,7 +159,7 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     store = front.store
     step, radius = motion_between(last, now, best[SIZE])
     store[GONE] += step
-    sure = step < low or store[GONE] < store[APART_TO]
+    sure = step < low
     if store[GONE] > FARTHEST_GONE * best[SIZE]:
         begin_motion(front, FARTHEST_GONE * MOTION_SPARE * best[SIZE])
     store[FRAME] += 1.0
@@ -180,8 +179,6 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     follow(a, now, front, travel, best, minima, counts)
     anew = frame(a, now, front, travel, best, minima, counts)
     tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)
-    if not sure and out[BOUND] <= 0.0:  # what rests is known of solids that are apart alone
-        store[APART_TO] = -inf
     out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], counts), step
     out[ANEW], out[SURE], out[N_SETS] = 1.0 if anew else 0.0, 1.0 if sure else 0.0, 0.0
     return travel

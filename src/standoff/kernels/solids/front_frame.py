@@ -19,7 +19,6 @@ from standoff.kernels.solids.front_rows import (
     N_AWAKE,
     N_MADE,
     N_ROWS,
-    REST_APART,
     RESTS_UP_TO,
     ROW_A,
     ROW_B,
@@ -32,7 +31,6 @@ from standoff.kernels.solids.front_rows import (
     is_due,
     is_passed_over,
     is_shut,
-    keep_apart,
 )
 from standoff.kernels.solids.spatial_boxes import node_centre, node_reach
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
@@ -151,7 +149,6 @@ def make_front(front):
     """One row, of both roots."""
     front.store[N_ROWS], front.store[MAKING], front.store[COST] = 0.0, 1.0, 0.0
     front.store[N_AWAKE], front.store[RESTS_UP_TO], front.store[LATE] = 0.0, -inf, 0.0
-    front.store[REST_APART] = inf
     add_row(front, -1, -1, (NOWHERE, NOWHERE), -inf, (0.0, 0.0, 0.0, 0.0), False)
 
 
@@ -226,7 +223,6 @@ def frame(a, b, front, travel, best, minima, counts):
                 descend(a, b, front, k, best, minima, counts)
             elif not is_due(front, k, asked_of(front, k, best), travel):
                 tell_open(front, k, travel, best)  # all others are told
-    keep_apart(front)
     if above > 0.0:
         best[ABOVE] = above
         bound_found(front, travel, best, minima)

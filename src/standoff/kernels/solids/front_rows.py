@@ -38,13 +38,11 @@ KEY_REALS, RESTS_TO, AWAKE = 4, 2, 3
 # the front had when it was made, how many frames there were, 1 until a front that is being made
 # has no open rows, and how many evaluations it took to make it; how many branches there are,
 # what the next new one is called, and how many have come to the place of another one in this call.
-# How many rows are awake; all others rest up to a motion, for goals up to a length; 1 if the last
-# frame ran out of time; and up to which motion the solids have not met, as no row can hold the
-# points in which they come together: of those at rest, and of all.
+# How many rows are awake; all others rest up to a motion, for goals up to a length; and 1 if the
+# last frame ran out of time.
 N_ROWS, GONE, N_MADE, FRAME, MAKING, COST, N_BRANCHES, NEXT_BRANCH = 0, 1, 2, 3, 4, 5, 6, 7
 N_MERGED, N_AWAKE, RESTS_UP_TO, RESTS_BELOW, LATE = 8, 9, 10, 11, 12
-REST_APART, APART_TO = 13, 14
-STORE_REALS = 15
+STORE_REALS = 13
 
 
 # Of `LATE`: while rows are looked at in which the solids may come together soon.
@@ -140,7 +138,7 @@ def list_awake(front, goal, rest, travel):
     if travel.gone <= store[RESTS_UP_TO] and goal <= store[RESTS_BELOW]:
         return
     store[RESTS_UP_TO], store[RESTS_BELOW] = travel.gone + rest, goal + rest
-    store[N_AWAKE], store[REST_APART] = 0.0, inf
+    store[N_AWAKE] = 0.0
     k = 0
     while k < int(store[N_ROWS]):
         if bound_key(front, k) == inf:
@@ -148,8 +146,6 @@ def list_awake(front, goal, rest, travel):
             continue
         if not is_at_rest(front, k, store[RESTS_BELOW], store[RESTS_UP_TO]):
             awaken(front, k)
-        else:
-            store[REST_APART] = min(store[REST_APART], apart_to(front, k))
         k += 1
 
 
@@ -161,15 +157,6 @@ def apart_to(front, k):
     shut holds none, and one with a bound above 0 none that is so near.
     """
     return max(front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1])
-
-
-@kernel
-def keep_apart(front):
-    """Write down up to which motion the solids will not have met, by what is known of all rows."""
-    least = front.store[REST_APART]
-    for i in range(int(front.store[N_AWAKE])):
-        least = min(least, apart_to(front, awake_row(front, i)))
-    front.store[APART_TO] = least
 
 
 @kernel
@@ -256,7 +243,6 @@ def begin_motion(front, spare):
         for i in range(AWAKE):
             front.keys[KEY_REALS * k + i] -= gone + spare
     front.store[GONE], front.store[RESTS_UP_TO] = 0.0, -inf
-    front.store[APART_TO] -= gone + spare
 
 
 @kernel
