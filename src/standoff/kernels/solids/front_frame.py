@@ -57,6 +57,7 @@ from standoff.kernels.solids.spatial_progress import (
 from standoff.kernels.solids.spatial_tolerances import (
     FLAT_SPAN,
     FLAT_VALLEY,
+    LEAST_REST,
     MOTION_SPARE,
     ONE_PLACE,
 )
@@ -72,8 +73,8 @@ FRAMES_AHEAD, FARTHEST_AHEAD = 4.0, 0.02
 # Frames for which rows have been open, those that come first for it; 0: rows in which the solids
 # may come together within `FRAMES_AHEAD`.
 LONG_OPEN = (0.0, 8.0, 4.0, 2.0, 1.0)
-# Rows are not looked at again for twice that motion, and for so many sizes at least.
-FRAMES_AT_REST, LEAST_REST = 8.0, 1e-4
+# Rows are not looked up again for so many frames' motion, and for `LEAST_REST` at least.
+FRAMES_AT_REST = 8.0
 
 
 @kernel
