@@ -26,6 +26,10 @@ PAIRS = {
 }
 
 
+LITTLE, ONE_LOOK = 30, 100
+"""Evaluations of a frame, and those by which the last look at a pair of pieces may exceed them."""
+
+
 def placed(turn: Array, shift: Array) -> Array:
     matrix = np.eye(4)
     matrix[:3, :3], matrix[:3, 3] = turn, shift
@@ -266,7 +270,7 @@ def test_with_little_time_frames_go_on_all_the_same() -> None:
     """Few evaluations a frame: intervals are true, nothing is asked anew, and most are proven."""
     a, b = PAIRS["bracket, bracket"]
     poses = wandering(a, b, 300, 4e-3, np.random.default_rng(2), 0.1)
-    hasty = SolidTracker(a, b, deadline=60)
+    hasty = SolidTracker(a, b, deadline=90)
     state = hasty.start(STILL, poses[0])
     assert state.proximity.certified
     _, answers = hasty.run(state, STILL, poses)
@@ -278,6 +282,26 @@ def test_with_little_time_frames_go_on_all_the_same() -> None:
         cold = so.solids.distance(a, b, STILL, poses[k])
         assert answers.lower_bound[k] <= cold.upper_bound
         assert answers.upper_bound[k] >= cold.lower_bound
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_no_frame_takes_much_longer_than_it_may_and_all_are_true(name: str) -> None:
+    """Near each other, with time for a part of each frame: rows are left open again and again."""
+    a, b = PAIRS[name]
+    poses = wandering(a, b, 100, 4e-3, np.random.default_rng(11), 2e-3)
+    hasty, full = SolidTracker(a, b, deadline=LITTLE), SolidTracker(a, b)
+    state = full.start(STILL, poses[0])
+    _, answers = hasty.run(state, STILL, poses[1:])
+    _, right = full.run(state, STILL, poses[1:])
+    assert right.certified.all()
+    apart = answers.status != so.Status.OVERLAPPING
+    going_on = apart & ~answers.restarts
+    assert answers.evaluations[going_on].max() < LITTLE + ONE_LOOK
+    assert (answers.lower_bound <= right.upper_bound + 1e-12).all()
+    assert (right.lower_bound <= answers.upper_bound + 1e-12).all()
+    late = answers.status == so.Status.DEADLINE
+    assert (answers.evaluations[late] > LITTLE).all()
+    assert not answers.certified[late].any()
 
 
 def test_afront_that_has_grown_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -94,8 +94,8 @@ def boundaries(g, pose):
 
 
 @kernel
-def go_apart(g):
-    """A frame from the front; is it answered?"""
+def go_apart(g, deadline):
+    """A frame from the front, with so many evaluations; is it answered?"""
     s = g.block
     a, now = boundaries(g, g.pose)
     last = boundaries(g, B.pose_kept(s, B.LAST))[1]
@@ -105,7 +105,7 @@ def go_apart(g):
     )
     front.store[N_MERGED] = 0.0
     best, minima, told = ahead(s, B.BEST), ahead(s, B.W_MINIMA), ahead(s, B.W_TOLD)
-    best[BUDGET] = g.asked[B.Q_DEADLINE]
+    best[BUDGET] = deadline
     asked = ahead(g.asked, B.Q_FRAME)
     travel = T.apart_frame(
         (a, last, now), s[B.LAST_LOW], asked, front, (best, minima), g.counts, told
@@ -245,7 +245,7 @@ def from_nothing(g, deadline):
     search(a, b, best, ties, g.probe.heap, g.probe.space, g.counts)
     met, low = best[MET] > 0.0, new_front(g, best)
     if not met and low > 0.0:
-        if inside >= 0 and go_apart(g):
+        if inside >= 0 and go_apart(g, deadline):
             return
         tell_unproven(g, best, a, b)
         s[B.MODE], s[B.OVERLAPPED] = B.UNKNOWN, 0.0
@@ -280,7 +280,7 @@ def whole_frame(g):
             told_from_nothing(g, g.asked[B.Q_DEADLINE])
             return
         s[B.MODE] = B.APART
-    if go_apart(g) or meet(g):
+    if go_apart(g, g.asked[B.Q_DEADLINE]) or meet(g):
         return
     told_from_nothing(g, g.asked[B.Q_DEADLINE])
 

@@ -30,6 +30,7 @@ from standoff.kernels.solids.front_frame import (
     frame,
     is_single,
     motion_between,
+    rest_for,
     rounding_of,
 )
 from standoff.kernels.solids.front_rows import (
@@ -40,6 +41,7 @@ from standoff.kernels.solids.front_rows import (
     Front,
     Travel,
     begin_motion,
+    list_awake,
 )
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, gather
 from standoff.kernels.solids.patch import span_all
@@ -59,8 +61,10 @@ from standoff.kernels.solids.spatial_progress import (
     OPEN,
     ROUNDING,
     SIZE,
+    STOP,
     TOLERANCE,
     evaluations,
+    farthest,
 )
 from standoff.kernels.solids.spatial_tolerances import MOTION_SPARE
 from standoff.kernels.state.arrays import BAD_POSE_A, BAD_POSE_B, FINE, is_pose
@@ -102,6 +106,9 @@ def how_ended(a, b, best, minima, low, counts):
         return INTERVAL if evaluations(counts) > best[BUDGET] else TO_ASK
     if low < best[LEAST] - best[TOLERANCE]:
         return INTERVAL
+    # what ties was not gone through
+    if best[N_OPEN] > 0.0 and evaluations(counts) > best[BUDGET]:
+        return INTERVAL
     return SINGLE if is_single(a, b, best, minima) else SEVERAL
 
 
@@ -138,6 +145,7 @@ def ask(best, asked, away):
     best[ROUNDING] = asked[1] * (best[SIZE] + away)
     best[TOLERANCE] = max(asked[0], 4.0 * best[ROUNDING])
     best[MEETING], best[ABOVE] = best[TOLERANCE], asked[2]
+    best[STOP] = max(best[BUDGET], 1.0)
     best[LEAST], best[OPEN], best[MET] = inf, inf, 0.0
     best[N_MINIMA], best[N_OPEN], best[LOST] = 0.0, 0.0, 0.0
 
@@ -150,8 +158,8 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     best, minima = search
     store = front.store
     step, radius = motion_between(last, now, best[SIZE])
-    sure = step < low
     store[GONE] += step
+    sure = step < low
     if store[GONE] > FARTHEST_GONE * best[SIZE]:
         begin_motion(front, FARTHEST_GONE * MOTION_SPARE * best[SIZE])
     store[FRAME] += 1.0
@@ -166,6 +174,8 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     begin(a, now, best, minima)
     if best[ABOVE] > 0.0:  # that pair is none of the minima now
         best[N_MINIMA] = 0.0
+    rest = rest_for(step, best[SIZE])
+    list_awake(front, farthest(best) + best[ROUNDING], rest, travel)
     follow(a, now, front, travel, best, minima, counts)
     anew = frame(a, now, front, travel, best, minima, counts)
     tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)

@@ -4,49 +4,62 @@ from math import inf
 
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.coaxial import NO_POTENTIAL
 from standoff.kernels.solids.front_motion import (
     mark_bound,
+    mark_place,
     slope_of,
 )
 from standoff.kernels.solids.front_rows import (
     CUT,
     FRAME,
+    HURRIED,
     KEPT,
+    LATE,
     ROW_DISTANCE,
     ROW_FRAME,
     ROW_REALS,
     ROW_WAY,
-    add_row,
-    bound_key,
     keep_bound,
-    put_row,
+    put_parts,
     start_of_row,
 )
 from standoff.kernels.solids.spatial_closing import (
     FEW_BOXES,
+    HERE,
     MOST_BOXES,
+    OWN_A,
     OWN_B,
     THERE,
     aimed,
-    closed_again,
+    by_own_surface,
+    by_witness,
     closed_off_trim,
     closed_to,
     split,
     widths,
 )
 from standoff.kernels.solids.spatial_pieces import (
+    leaf_ints,
     leaf_jet,
+    natural,
     reach_of,
 )
 from standoff.kernels.solids.spatial_progress import (
+    AT,
     BISECTIONS,
     BOXES,
+    LEAF_A,
+    LEAF_B,
     LEAST,
     ROUNDING,
     SIZE,
+    STOP,
     TOLERANCE,
+    evaluations,
     goal_of,
+    is_stopped,
 )
 from standoff.kernels.solids.spatial_tolerances import SHORTEST_PART
 
@@ -57,6 +70,10 @@ LEAVES_AHEAD = 8.0
 # A pair of parts at the least distance that takes more boxes than this in each frame is cut, while
 # it is longer than so many times what B moves.
 MANY_BOXES, WIDE = 8, 4.0
+# The same, of parts that trimming curves may cut, with the parts of those.
+MANY_ON_TRIMS = 40
+# Of how far parts are apart: what is proven first where time is short.
+SOME = 0.5
 # Of a row that is proven to be no farther than is asked, another way is sought in one frame of so
 # many.
 RETRIED = 16
@@ -88,10 +105,31 @@ def keep_proven(front, k, low, way, phi, ball, travel, best):
     the ball (centre, radius) round B's part."""
     low -= best[ROUNDING]
     keep_bound(front, k, low, travel)
+    mark_place(front, k, ball[0], ball[1], 0.0, travel)
     room = LEAVES_AHEAD * travel.ahead
     sign = -1.0 if way == OWN_B else 1.0
     slope, spread = slope_of(phi, sign, ball[0], ball[1], room)
     mark_bound(front, k, low, slope, spread, room)
+
+
+@kernel
+def closed_again(way, goal, pair, limit, best, counts):
+    """(whether the way that `closed_to` told of a pair at another time proves a goal of it,
+    potential)."""
+    a, b, q, _ = pair
+    if way == OWN_A:
+        closed = by_own_surface(goal, a, b, (q[2], q[3]), limit, counts)
+        return closed, natural(a.side, a.leaf)[1]
+    if way == OWN_B:
+        closed = by_own_surface(goal, b, a, (q[0], q[1]), limit, counts)
+        return closed, natural(b.side, b.leaf)[1]
+    if way < THERE:
+        at, one = (a.leaf, b.leaf, q), way - HERE
+    else:
+        q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
+        at, one = (int(best[LEAF_A]), int(best[LEAF_B]), q), way - THERE
+    told, phi = by_witness(goal, a, b, at, (one, one), limit, best, counts)
+    return told >= 0, phi
 
 
 @kernel
@@ -150,12 +188,29 @@ def is_wide(pair, travel):
 
 
 @kernel
+def many_boxes(pair):
+    """Of a potential over two parts, some along trimming curves."""
+    pa, pb, _, _ = pair
+    cut = pa.side.own[leaf_ints(pa.side, pa.leaf) + S.CUT]
+    cut += pb.side.own[leaf_ints(pb.side, pb.leaf) + S.CUT]
+    return MANY_BOXES if cut == 0 else MANY_ON_TRIMS
+
+
+@kernel
 def close_row(front, k, pair, ball, travel, best, minima, counts):
     """Prove of two parts that they are as far apart as the nearest points, and more where they are;
     what no potential proves is cut."""
     pa, pb, _, distance = pair
     goal, ahead, boxes = lasting_goal(best), LEAVES_AHEAD * travel.ahead, counts[BOXES]
+    begun = evaluations(counts)
     aim = aimed(goal, distance, ahead)
+    if front.store[LATE] == HURRIED:
+        # first of all such rows so much that the solids are known not to come together there
+        some = min(SOME * distance, goal)
+        way, phi = closed_to(some, -1, pair, FEW_BOXES, best, minima, counts)
+        if way >= 0:
+            keep_proven(front, k, some, way, phi, ball, travel, best)
+            return KEPT
     low, way, phi = close_again(front, k, pair, aim, best, counts)
     if low < goal:
         way = -1
@@ -164,16 +219,20 @@ def close_row(front, k, pair, ball, travel, best, minima, counts):
         if way < 0:
             aim = goal
             way, phi = closed_to(goal, -1, pair, FEW_BOXES, best, minima, counts)
-        if way < 0 and distance >= goal:
+        if way < 0 and distance >= goal and not is_stopped(best, counts):
             way, phi = closed_to(goal, -1, pair, MOST_BOXES, best, minima, counts)
         front.rows[ROW_REALS * k + ROW_WAY] = way
         low = aim if way >= 0 else -inf
-    if low < goal and distance < goal:
+    if low < goal and distance < goal and not is_stopped(best, counts):
         low, phi = closed_off_trim(goal, ahead, pa, pb, best, counts)
-    if counts[BOXES] - boxes > MANY_BOXES and distance < goal + ahead and is_wide(pair, travel):
+    many = counts[BOXES] - boxes > many_boxes(pair)
+    if many and distance < goal + ahead and is_wide(pair, travel):
         low = -inf
     if low >= goal:
         keep_proven(front, k, low, way, phi, ball, travel, best)
+        return KEPT
+    # what needs more than half of a frame's time is cut, all else is looked at in the next frame
+    if is_stopped(best, counts) and begun > 0.5 * best[STOP]:
         return KEPT
     counts[BISECTIONS] += 1
     return CUT if cut_row(front, k, pair, best) else KEPT
@@ -183,19 +242,14 @@ def close_row(front, k, pair, ball, travel, best, minima, counts):
 def cut_row(front, k, pair, best):
     """Cut the longer part in two; False: it is too short, or there is no room."""
     pa, pb, q, _ = pair
-    key = bound_key(front, k)
     au, av = widths(pa.side, pa.leaf, pa.box)
     bu, bv = widths(pb.side, pb.leaf, pb.box)
     if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
         return False
     if max(au, av) >= max(bu, bv):
         first, second = split(pa.box, au >= av)
-        if not add_row(front, pa.leaf, pb.leaf, (second, pb.box), key, q, True):
-            return False
-        put_row(front, k, pa.leaf, pb.leaf, first, pb.box, key)
-        return True
-    first, second = split(pb.box, bu >= bv)
-    if not add_row(front, pa.leaf, pb.leaf, (pa.box, second), key, q, True):
-        return False
-    put_row(front, k, pa.leaf, pb.leaf, pa.box, first, key)
-    return True
+        parts = (first, pb.box), (second, pb.box)
+    else:
+        first, second = split(pb.box, bu >= bv)
+        parts = (pa.box, first), (pa.box, second)
+    return put_parts(front, k, (pa.leaf, pb.leaf), parts, q)

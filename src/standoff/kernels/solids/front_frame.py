@@ -9,17 +9,23 @@ from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.front_branches import follow_branches
 from standoff.kernels.solids.front_close import tied
-from standoff.kernels.solids.front_look import descend, settle_row
+from standoff.kernels.solids.front_look import asked_of, descend, settle_row, tell_open
 from standoff.kernels.solids.front_minima import find_minima
 from standoff.kernels.solids.front_rows import (
     COST,
+    HURRIED,
+    LATE,
     MAKING,
+    N_AWAKE,
     N_MADE,
     N_ROWS,
+    RESTS_UP_TO,
     ROW_A,
     ROW_B,
     ROW_REALS,
     add_row,
+    apart_to,
+    awake_row,
     bound_key,
     box_of_row,
     is_due,
@@ -41,6 +47,7 @@ from standoff.kernels.solids.spatial_progress import (
     N_MINIMA,
     N_OPEN,
     NOWHERE,
+    OPEN,
     SIZE,
     TOLERANCE,
     evaluations,
@@ -50,6 +57,7 @@ from standoff.kernels.solids.spatial_progress import (
 from standoff.kernels.solids.spatial_tolerances import (
     FLAT_SPAN,
     FLAT_VALLEY,
+    LEAST_REST,
     MOTION_SPARE,
     ONE_PLACE,
 )
@@ -62,6 +70,11 @@ GROWN, GROWN_BY = 2.0, 256.0
 FARTHEST_GONE = 16.0
 # Bounds are wanted that last for so many frames like this one, and for so many sizes at most.
 FRAMES_AHEAD, FARTHEST_AHEAD = 4.0, 0.02
+# Frames for which rows have been open, those that come first for it; 0: rows in which the solids
+# may come together within `FRAMES_AHEAD`.
+LONG_OPEN = (0.0, 8.0, 4.0, 2.0, 1.0)
+# Rows are not looked up again for so many frames' motion, and for `LEAST_REST` at least.
+FRAMES_AT_REST = 8.0
 
 
 @kernel
@@ -84,6 +97,12 @@ def motion_between(before, now, size):
 def rounding_of(now, size):
     """Of a shift from any pose to one like this, length."""
     return 2.0 * MOTION_SPARE * (size + norm(now.pose.p))
+
+
+@small
+def rest_for(step, size):
+    """Motion for which the list of rows that are awake serves, length."""
+    return min(max(FRAMES_AT_REST * step, LEAST_REST * size), FARTHEST_AHEAD * size)
 
 
 @kernel
@@ -110,7 +129,8 @@ def follow(a, b, front, travel, best, minima, counts):
     q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     leaf_a, leaf_b = best[LEAF_A], best[LEAF_B]
     most = best[LEAST] + travel.gone
-    for k in range(int(front.store[N_ROWS])):
+    for i in range(int(front.store[N_AWAKE])):
+        k = awake_row(front, i)
         if bound_key(front, k) > most:
             continue
         o = ROW_REALS * k
@@ -129,6 +149,7 @@ def holds(box, u, v):
 def make_front(front):
     """One row, of both roots."""
     front.store[N_ROWS], front.store[MAKING], front.store[COST] = 0.0, 1.0, 0.0
+    front.store[N_AWAKE], front.store[RESTS_UP_TO], front.store[LATE] = 0.0, -inf, 0.0
     add_row(front, -1, -1, (NOWHERE, NOWHERE), -inf, (0.0, 0.0, 0.0, 0.0), False)
 
 
@@ -138,6 +159,44 @@ def has_grown(front, best):
     store = front.store
     grown = store[MAKING] == 0.0 and store[N_ROWS] > GROWN * store[N_MADE] + GROWN_BY
     return grown and best[BUDGET] > GROWN * store[COST]
+
+
+@kernel
+def settle_oldest(a, b, front, age, travel, best, minima, counts):
+    """Look at rows while there is time: those in which the solids may come together soon, and of
+    these first at so much that they are known not to (`age` 0); or those whose bounds have sunk by
+    `age` frames' motion since they were asked for."""
+    store = front.store
+    low = min(tied(best), travel.ahead)
+    if age > 0.0:
+        low = tied(best) - age * travel.ahead / FRAMES_AHEAD
+    store[LATE], i = HURRIED if age == 0.0 else 1.0, 0
+    while i < int(store[N_AWAKE]) and evaluations(counts) <= best[BUDGET]:
+        k = awake_row(front, i)
+        i += 1
+        key = apart_to(front, k) if age == 0.0 else bound_key(front, k)
+        if key - travel.gone < low and best[MET] == 0.0:
+            settle_row(a, b, front, k, travel, best, minima, counts)
+
+
+@kernel
+def settle_rows(a, b, front, travel, best, minima, counts):
+    """Look at all rows that are due. If the last frame ran out of time, those come first that have
+    been open for longest."""
+    store = front.store
+    if store[LATE] > 0.0:
+        for age in LONG_OPEN:
+            settle_oldest(a, b, front, age, travel, best, minima, counts)
+    best[OPEN], best[N_OPEN], store[LATE] = inf, 0.0, 0.0
+    i = 0
+    while i < int(store[N_AWAKE]) and best[MET] == 0.0:
+        k = awake_row(front, i)
+        i += 1
+        # most rows rest, by their keys alone: nothing more is asked of any
+        if not is_due(front, k, tied(best), travel):
+            continue
+        if not settle_row(a, b, front, k, travel, best, minima, counts):
+            store[LATE] = 1.0
 
 
 @kernel
@@ -152,21 +211,19 @@ def frame(a, b, front, travel, best, minima, counts):
         follow_branches(a, b, front, best, minima, counts)
         find_minima(a, b, front, travel, best, minima, counts)
         best[ABOVE] = 0.0  # what is to be proven does not depend on it
-    k = 0
-    while k < int(store[N_ROWS]) and best[MET] == 0.0:
-        # most rows rest, by their keys alone: nothing more is asked of any
-        if not is_due(front, k, tied(best), travel) or not settle_row(
-            a, b, front, k, travel, best, minima, counts
-        ):
-            k += 1
+    settle_rows(a, b, front, travel, best, minima, counts)
     if store[MAKING] > 0.0:
         store[COST] += evaluations(counts)
         if best[N_OPEN] == 0.0:
             store[N_MADE], store[MAKING] = store[N_ROWS], 0.0
     # what rests, and may be as near as the nearest, is gone through all the same
-    for k in range(int(store[N_ROWS])):
+    for i in range(int(store[N_AWAKE])):
+        k = awake_row(front, i)
         if best[MET] == 0.0 and is_passed_over(front, k, tied(best), travel):
-            descend(a, b, front, k, best, minima, counts)
+            if evaluations(counts) <= best[BUDGET]:
+                descend(a, b, front, k, best, minima, counts)
+            elif not is_due(front, k, asked_of(front, k, best), travel):
+                tell_open(front, k, travel, best)  # all others are told
     if above > 0.0:
         best[ABOVE] = above
         bound_found(front, travel, best, minima)
@@ -179,7 +236,8 @@ def bound_found(front, travel, best, minima):
     n = int(best[N_MINIMA])
     for i in range(n):
         minima[MINIMUM_REALS * i + BOUND] = minima[MINIMUM_REALS * i]
-    for k in range(int(front.store[N_ROWS])):
+    for j in range(int(front.store[N_AWAKE])):
+        k = awake_row(front, j)
         low = bound_key(front, k) - travel.gone
         if low >= farthest(best) or is_shut(front, k, travel):
             continue

@@ -26,13 +26,14 @@ from standoff.kernels.solids.front_rows import (
     ROW_B,
     ROW_DISTANCE,
     ROW_FRAME,
+    ROW_FREE,
     ROW_REALS,
     ROW_WAY,
     UNSEEN,
     add_row,
     bound_key,
     box_of_row,
-    drop_row,
+    empty_row,
     is_due,
     keep_bound,
     keep_shut,
@@ -171,22 +172,25 @@ def bound_leaves(a, b, front, k, goal, travel, best, counts):
     rests as it holds no nearest pair nearer than `goal`, or neither is known (`OPEN_ROW`)."""
     pa, pb = parts_of_row(a, b, front, k)
     counts[LEAF_PAIRS] += 1
+    counts[BOXES] += 2  # their middles
     o = ROW_REALS * k
     if front.rows[o + ROW_WAY] == UNSEEN:
         if (
             trim_state(a, pa.leaf, pa.box) == OUTSIDE_TRIM
             or trim_state(b, pb.leaf, pb.box) == OUTSIDE_TRIM
         ):
-            drop_row(front, k)
+            empty_row(front, k)
             return GONE_ROW, (ZERO, 0.0)
         front.rows[o + ROW_WAY] = NO_WAY
-    low, free, (x, y) = no_pair(pa, pb, goal, best[ROUNDING], travel.turn)
+    low, free, middles = no_pair(pa, pb, goal, best[ROUNDING], travel.turn)
+    ball = middles[1], reach_of_part(pb)
+    # a greater bound that was proven before is kept, with the slope it was proven along
+    weaker = free <= 0.0 and low + travel.gone < bound_key(front, k)
     keep_bound(front, k, low, travel)
-    away, ball = sub(y, x), (y, reach_of_part(pb))
-    length = norm(away)
-    mark_place(front, k, y, ball[1], length + reach_of_part(pa), travel)
-    if low > 0.0:
-        mark_bound(front, k, low, scale(1.0 / length, away), 0.0, inf)
+    if weaker:
+        front.rows[o + ROW_FREE] = -inf
+    else:
+        mark_middles(front, k, pa, middles, ball, low, travel)
     if free == inf:
         return KEPT, ball
     if free > 0.0:
@@ -198,13 +202,26 @@ def bound_leaves(a, b, front, k, goal, travel, best, counts):
         free, own = beside_plane(pa, pb, 1.0, goal, travel, best, counts)
         if own <= 0.0:
             free, own = beside_plane(pb, pa, travel.afar, goal, travel, best, counts)
-        mark_shut(front, k, own, goal + own)
+        if own > 0.0:
+            mark_middles(front, k, pa, middles, ball, low, travel)
+            mark_shut(front, k, own, goal + own)
     if free < 0.0 and not travel.sure and planes_apart(pa, pb, best[SIZE]):
         free = 0.0
     if free < 0.0:
         return OPEN_ROW, ball
     keep_shut(front, k, free, travel)
     return KEPT, ball
+
+
+@kernel
+def mark_middles(front, k, part, middles, ball, low, travel):
+    """Write down where the parts of a row are, A's and the ball round B's, and their bound along
+    the line between their middle points."""
+    away = sub(middles[1], middles[0])
+    length = norm(away)
+    mark_place(front, k, middles[1], ball[1], length + reach_of_part(part), travel)
+    if low > 0.0:
+        mark_bound(front, k, low, scale(1.0 / length, away), 0.0, inf)
 
 
 @kernel
@@ -220,7 +237,7 @@ def look_at_leaves(a, b, front, k, travel, best, minima, counts):
     if before and close_as_before(front, k, (pa, pb), ball, travel, best, counts):
         return KEPT
     q, distance = descend(a, b, front, k, best, minima, counts)
-    if best[MET] > 0.0:
+    if best[MET] > 0.0 or evaluations(counts) > best[BUDGET]:
         return KEPT
     return close_row(front, k, (pa, pb, q, distance), ball, travel, best, minima, counts)
 
@@ -235,7 +252,7 @@ def asked_of(front, k, best):
 
 @kernel
 def settle_row(a, b, front, k, travel, best, minima, counts):
-    """Look at a row until it is no longer due, cutting it; whether it is gone. What stays open
+    """Look at a row until it is no longer due, cutting it; whether there was time. What stays open
     lowers best[OPEN]."""
     told = CUT
     if is_due(front, k, asked_of(front, k, best), travel):
@@ -251,7 +268,8 @@ def settle_row(a, b, front, k, travel, best, minima, counts):
             told = look_at_leaves(a, b, front, k, travel, best, minima, counts)
         if told == KEPT and is_open(front, k, asked_of(front, k, best), travel):
             tell_open(front, k, travel, best)
-    return told == GONE_ROW
+            return evaluations(counts) <= best[BUDGET]
+    return True
 
 
 @kernel

@@ -10,14 +10,16 @@ from standoff.kernels.solids.front_close import LEAVES_AHEAD, keep_proven
 from standoff.kernels.solids.front_look import bound_leaves, descend, look_at_nodes, parts_of_row
 from standoff.kernels.solids.front_motion import carry_row
 from standoff.kernels.solids.front_rows import (
+    CUT,
     KEPT,
     KEY_REALS,
-    N_ROWS,
+    N_AWAKE,
     OPEN_ROW,
     RESTS_TO,
     ROW_A,
     ROW_REALS,
     ROW_WAY,
+    awake_row,
     is_due,
     open_up,
 )
@@ -44,9 +46,9 @@ RESTS = 0.25
 def find_minima(a, b, front, travel, best, minima, counts):
     """Keep the local minima below best[ABOVE], at most one of each pair of parts. What there
     is no time for counts as lost."""
-    k = 0
-    while k < int(front.store[N_ROWS]) and best[MET] == 0.0:
-        told = KEPT
+    i = 0
+    while i < int(front.store[N_AWAKE]) and best[MET] == 0.0:
+        told, k = KEPT, awake_row(front, i)
         rests = front.keys[KEY_REALS * k + RESTS_TO] > travel.gone
         if not rests and is_due(front, k, farthest(best), travel):
             carry_row(front, k, farthest(best) + best[ROUNDING], travel)
@@ -59,8 +61,8 @@ def find_minima(a, b, front, travel, best, minima, counts):
                 told = look_at_nodes(a, b, front, k, travel, best, counts)
             else:
                 told = find_in_leaves(a, b, front, k, travel, best, minima, counts)
-        if told == KEPT:
-            k += 1
+        if told != CUT:
+            i += 1
 
 
 @kernel

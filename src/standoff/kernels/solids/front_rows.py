@@ -31,15 +31,22 @@ UNSEEN, NO_WAY = -2.0, -1.0
 # be done.
 KEPT, CUT, GONE_ROW, OPEN_ROW = 0, 1, 2, 3
 # Of each row three numbers: bound and shut, both plus the motion when they were proven; and up to
-# which motion Newton's method is not run for local minima alone.
-KEY_REALS, RESTS_TO = 3, 2
+# which motion Newton's method is not run for local minima alone. And beside them an entry of the
+# list of rows that are awake.
+KEY_REALS, RESTS_TO, AWAKE = 4, 2, 3
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
 # the front had when it was made, how many frames there were, 1 until a front that is being made
 # has no open rows, and how many evaluations it took to make it; how many branches there are,
 # what the next new one is called, and how many have come to the place of another one in this call.
+# How many rows are awake; all others rest up to a motion, for goals up to a length; and 1 if the
+# last frame ran out of time.
 N_ROWS, GONE, N_MADE, FRAME, MAKING, COST, N_BRANCHES, NEXT_BRANCH = 0, 1, 2, 3, 4, 5, 6, 7
-N_MERGED = 8
-STORE_REALS = 9
+N_MERGED, N_AWAKE, RESTS_UP_TO, RESTS_BELOW, LATE = 8, 9, 10, 11, 12
+STORE_REALS = 13
+
+
+# Of `LATE`: while rows are looked at in which the solids may come together soon.
+HURRIED = 2.0
 
 
 class Front(NamedTuple):
@@ -99,7 +106,57 @@ def add_row(front, i, j, boxes, bound, q, known):
     for k in range(4):
         front.rows[o + ROW_AT + k] = q[k]
     front.store[N_ROWS] += 1.0
+    awaken(front, n)
     return True
+
+
+@kernel
+def awaken(front, k):
+    front.keys[KEY_REALS * int(front.store[N_AWAKE]) + AWAKE] = k
+    front.store[N_AWAKE] += 1.0
+
+
+@kernel
+def awake_row(front, i):
+    """The i-th row that is awake; they ascend."""
+    return int(front.keys[KEY_REALS * i + AWAKE])
+
+
+@kernel
+def is_at_rest(front, k, goal, motion):
+    """Is a row due in no frame up to a motion, for goals up to `goal`, even where the solids may
+    have a common point?"""
+    bound, shut = front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1]
+    return bound >= goal + motion or (shut > motion and bound > motion)
+
+
+@kernel
+def list_awake(front, goal, rest, travel):
+    """List the rows that may be due while the motion, and the goal, grow by no more than `rest`,
+    where the list that there is does not serve any more; what is empty is taken out."""
+    store = front.store
+    if travel.gone <= store[RESTS_UP_TO] and goal <= store[RESTS_BELOW]:
+        return
+    store[RESTS_UP_TO], store[RESTS_BELOW] = travel.gone + rest, goal + rest
+    store[N_AWAKE] = 0.0
+    k = 0
+    while k < int(store[N_ROWS]):
+        if bound_key(front, k) == inf:
+            drop_row(front, k)
+            continue
+        if not is_at_rest(front, k, store[RESTS_BELOW], store[RESTS_UP_TO]):
+            awaken(front, k)
+        k += 1
+
+
+@kernel
+def apart_to(front, k):
+    """Up to which motion a row cannot hold the points in which the solids come together.
+
+    Until they do a nearest pair has opposite normals, and its distance goes to 0: a row that is
+    shut holds none, and one with a bound above 0 none that is so near.
+    """
+    return max(front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1])
 
 
 @kernel
@@ -116,12 +173,36 @@ def put_row(front, k, i, j, box_a, box_b, bound):
 
 
 @kernel
+def put_parts(front, k, leaves, parts, q):
+    """Put both parts (boxes of A, of B) of a pair of leaves' parts in its place: what was proven of
+    the whole, and along which slope, is true of them. False: there is no room."""
+    first, second = parts
+    key, r = bound_key(front, k), front.rows
+    if not add_row(front, leaves[0], leaves[1], second, key, q, True):
+        return False
+    o, n = ROW_REALS * k, ROW_REALS * (int(front.store[N_ROWS]) - 1)
+    low = r[o + ROW_LOW]
+    put_row(front, k, leaves[0], leaves[1], first[0], first[1], key)
+    r[o + ROW_LOW] = low
+    for i in range(ROW_LOW, ROW_REALS):
+        if i != ROW_FREE:
+            r[n + i] = r[o + i]
+    return True
+
+
+@kernel
+def empty_row(front, k):
+    """What a row holds is on no face: it is taken out when rows are listed again."""
+    front.keys[KEY_REALS * k] = inf
+
+
+@kernel
 def drop_row(front, k):
     """Take a row out: the last takes its place."""
     last = int(front.store[N_ROWS]) - 1
     for i in range(ROW_REALS):
         front.rows[ROW_REALS * k + i] = front.rows[ROW_REALS * last + i]
-    for i in range(KEY_REALS):
+    for i in range(AWAKE):
         front.keys[KEY_REALS * k + i] = front.keys[KEY_REALS * last + i]
     front.store[N_ROWS] = last
 
@@ -158,9 +239,10 @@ def is_due(front, k, goal, travel):
 def begin_motion(front, spare):
     """The motion counts from 0 again; `spare` is for the rounding of what was kept beside it."""
     gone = front.store[GONE]
-    for k in range(KEY_REALS * int(front.store[N_ROWS])):
-        front.keys[k] -= gone + spare
-    front.store[GONE] = 0.0
+    for k in range(int(front.store[N_ROWS])):
+        for i in range(AWAKE):
+            front.keys[KEY_REALS * k + i] -= gone + spare
+    front.store[GONE], front.store[RESTS_UP_TO] = 0.0, -inf
 
 
 @kernel

@@ -7,7 +7,6 @@ from standoff.kernels.algebra.vectors import cross, dot, norm, rotate
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
-    coedge_parameters,
     edge_record,
     feature_jet,
     moved_jet,
@@ -28,12 +27,17 @@ from standoff.kernels.solids.spatial_likeness import (
 from standoff.kernels.solids.spatial_pieces import (
     CUT_BY_TRIM,
     OUTSIDE_TRIM,
+    box_between,
+    is_bent,
     leaf_ints,
     leaf_jet,
     leaf_reals,
     meets,
-    part_box,
+    part_in_place,
+    put_both_halves,
+    put_whole,
     trim_state,
+    whole_box,
 )
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
@@ -46,7 +50,8 @@ from standoff.kernels.solids.torus_potential import (
 
 # Boxes of one piece and one potential that wait at a time.
 MOST_WAITING = 60
-# Parts of one trimming curve that are tested along it.
+# Parts of one trimming curve that are tested along it, and those that wait: a stack has 252 numbers
+# of them, 6 of each and of two more.
 MOST_PARTS = 200
 PARTS_WAITING = 40
 
@@ -210,49 +215,52 @@ def greatest_along(phi, sign, side, piece, ta, tb):
 
 
 @kernel
-def along_trim(phi, sign, most, side, leaf, box):
-    """Is sign phi proven to be at most `most` on all trimming curves in a box?"""
-    r = leaf_ints(side, leaf)
+def along_trim(phi, sign, most, part, counts):
+    """Is sign phi proven to be at most `most` on all trimming curves in a part's box?"""
+    side, box = part.side, part.box
+    r = leaf_ints(side, part.leaf)
     own, m = side.own, side.numbers
     first = own[S.LISTS] + own[r + S.LIST]
-    stack = reals_on_stack(84)
+    stack = reals_on_stack(252)
     rounds = 0
     for k in range(own[r + S.N_LIST]):
         piece = own[first + k]
-        o = own[S.R_PIECES] + S.PIECE_REALS * piece
-        stack[0], stack[1] = m[o], m[o + 1]
+        if not meets(whole_box(side, piece), box):
+            continue
+        bent = is_bent(side, piece)
+        put_whole(side, piece, stack)
         count = 1
         while count > 0:
             count -= 1
-            ta, tb = stack[2 * count], stack[2 * count + 1]
-            if not meets(part_box(side, piece, ta, tb), box):
+            ends, p, q = part_in_place(stack, count)
+            ta, tb = ends
+            if not bent and not meets(box_between(side, piece, tb - ta, p, q), box):
                 continue
             rounds += 1
-            t = 0.5 * (ta + tb)
+            counts[0] += 1
             bound, value = greatest_along(phi, sign, side, piece, ta, tb)
             if bound <= most:
                 continue
             if rounds > MOST_PARTS or count >= PARTS_WAITING:
                 return False
+            put_both_halves(side, piece, stack, count, (ends, p, q))
             if value > most:
-                coedge = own[own[S.PIECES] + S.PIECE_INTS * piece]
-                pu, pv, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, t)
-                pu += m[o + S.P_SHIFT]
+                pu, pv = part_in_place(stack, count)[2]
+                pu += m[own[S.R_PIECES] + S.PIECE_REALS * piece + S.P_SHIFT]
                 if box.u0 <= pu <= box.u1 and box.v0 <= pv <= box.v1:
                     return False
-            stack[2 * count], stack[2 * count + 1] = ta, t
-            stack[2 * count + 2], stack[2 * count + 3] = t, tb
             count += 2
     return True
 
 
 @kernel
-def held_by_trim(phi, sign, most, side, leaf, box, g, change):
+def held_by_trim(phi, sign, most, part, g, change, counts):
     """Is sign phi at most `most` on the part of a face in a box, because it grows along a parameter
     up to the trimming curves, where it is not more, or to a side of the box, where it is not more
     or where no face is? Where it grows along both, up to the curves or to a corner of the box."""
+    side, leaf, box = part.side, part.leaf, part.box
     along_u, along_v = abs(g[0]) > change[0], abs(g[1]) > change[1]
-    if not (along_u or along_v) or not along_trim(phi, sign, most, side, leaf, box):
+    if not (along_u or along_v) or not along_trim(phi, sign, most, part, counts):
         return False
     if along_u and along_v:
         u = box.u1 if g[0] > 0.0 else box.u0
@@ -278,7 +286,7 @@ def held_by_trim(phi, sign, most, side, leaf, box, g, change):
 
 
 @kernel
-def settled(phi, sign, most, part, data, q):
+def settled(phi, sign, most, part, data, q, counts):
     """Whether sign phi is at most `most` on a part, as a whole: 1 proven, -1 a point of the solid
     has more, 0 not known."""
     side, leaf, b = part.side, part.leaf, part.box
@@ -302,10 +310,10 @@ def settled(phi, sign, most, part, data, q):
     if state == OUTSIDE_TRIM:
         return 1
     if state == CUT_BY_TRIM:
-        if held_by_trim(phi, sign, most, side, leaf, b, g, change):
-            return 1
         chart = side.own[leaf_ints(side, leaf) + S.CHART]
-        return -1 if value > most and on_face(side.ints, side.reals, chart, cu, cv) else 0
+        if value > most and on_face(side.ints, side.reals, chart, cu, cv):
+            return -1
+        return 1 if held_by_trim(phi, sign, most, part, g, change, counts) else 0
     return -1 if value > most else 0
 
 
@@ -319,17 +327,19 @@ def proven(phi, sign, most, part, q, limit, counts):
     data = (known and phi.kind == AXIS_OF, centre, first, other, along)
     stack = reals_on_stack(248)
     stack[0], stack[1], stack[2], stack[3] = box.u0, box.u1, box.v0, box.v1
-    count, rounds = 1, 0
+    count, rounds, begun = 1, 0, counts[0]
     while count > 0:
         count -= 1
         n = 4 * count
         b = S.Box(stack[n], stack[n + 1], stack[n + 2], stack[n + 3])
         rounds += 1
         counts[0] += 1
-        told = settled(phi, sign, most, S.Part(side, leaf, b), data, q)
+        told = settled(phi, sign, most, S.Part(side, leaf, b), data, q, counts)
         if told > 0:
             continue
         if told < 0 or rounds > limit or count >= MOST_WAITING:
+            return False
+        if counts[0] - begun > MOST_PARTS + limit:
             return False
         wide_u = m[o + S.FIRST] * (b.u1 - b.u0)
         wide_v = m[o + S.FIRST + 1] * (b.v1 - b.v0)

@@ -43,6 +43,7 @@ from standoff.kernels.solids.spatial_progress import (
     TOLERANCE,
     evaluations,
     goal_of,
+    is_stopped,
     keep_found,
     leave_open,
     local_goal,
@@ -111,11 +112,9 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     place = (here, q, x, y, limit)
     first, last = ways
     if last == SCREWED:
-        screw = common_screw(a, b)
-        if screw[0]:
-            known, phi = screw_between(a, b, x, y, n, screw)
-            if known and by_one(phi, goal, a, b, (here, q, x, y, SCREW_BOXES), counts):
-                return SCREWED, phi
+        closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), counts)
+        if closed:
+            return SCREWED, phi
     phi = plane_between(x, y, n)
     if first == 0 and by_one(phi, goal, a, b, place, counts):
         return 0, phi
@@ -131,6 +130,8 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
     turned, point, axis = common_axis(a, b, n, size)
     for way in range(max(first, 1), min(last, SCREWED - 1) + 1):
+        if is_stopped(best, counts):
+            break
         margin = MARGINS[(way - 1) // 2] / span
         if way % 2 == 0:
             phi = torus_between(x, y, n, frame, sa, sb, margin)
@@ -141,6 +142,16 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
             if known and by_one(phi, goal, a, b, place, counts):
                 return way, phi
     return -1, NO_POTENTIAL
+
+
+@kernel
+def by_screw(goal, a, b, n, place, counts):
+    """(whether a potential along a common screw proves it, potential)."""
+    screw = common_screw(a, b)
+    if not screw[0]:
+        return False, NO_POTENTIAL
+    known, phi = screw_between(a, b, place[2], place[3], n, screw)
+    return known and by_one(phi, goal, a, b, place, counts), phi
 
 
 @kernel
@@ -287,6 +298,8 @@ def closed_off_trim(goal, ahead, a, b, best, counts):
         way, phi = by_witness(aim, a, b, at, ALL_WAYS, FEW_BOXES, best, counts)
         if way >= 0:
             return aim, phi
+    if is_stopped(best, counts):
+        return -inf, NO_POTENTIAL
     q, distance = nearest_on_trim(b, a, counts)
     if not goal <= distance < inf:
         return -inf, NO_POTENTIAL
@@ -306,6 +319,8 @@ def closed_to(goal, row, pair, limit, best, minima, counts):
         return OWN_A, natural(a.side, a.leaf)[1]
     if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
         return OWN_B, natural(b.side, b.leaf)[1]
+    if is_stopped(best, counts):
+        return -1, NO_POTENTIAL
     if distance >= goal:
         way, phi = by_witness(goal, a, b, (a.leaf, b.leaf, q), ALL_WAYS, limit, best, counts)
         if way >= 0:
@@ -320,26 +335,6 @@ def closed_to(goal, row, pair, limit, best, minima, counts):
         return -1, NO_POTENTIAL
     way, phi = by_witness(goal, a, b, (wa, wb, at), ALL_WAYS, limit, best, counts)
     return THERE + way if way >= 0 else -1, phi
-
-
-@kernel
-def closed_again(way, goal, pair, limit, best, counts):
-    """(whether the way that `closed_to` told of a pair at another time proves a goal of it,
-    potential)."""
-    a, b, q, _ = pair
-    if way == OWN_A:
-        closed = by_own_surface(goal, a, b, (q[2], q[3]), limit, counts)
-        return closed, natural(a.side, a.leaf)[1]
-    if way == OWN_B:
-        closed = by_own_surface(goal, b, a, (q[0], q[1]), limit, counts)
-        return closed, natural(b.side, b.leaf)[1]
-    if way < THERE:
-        at, one = (a.leaf, b.leaf, q), way - HERE
-    else:
-        q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
-        at, one = (int(best[LEAF_A]), int(best[LEAF_B]), q), way - THERE
-    told, phi = by_witness(goal, a, b, at, (one, one), limit, best, counts)
-    return told >= 0, phi
 
 
 @kernel

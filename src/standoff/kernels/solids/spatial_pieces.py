@@ -20,9 +20,9 @@ from standoff.kernels.solids.torus_potential import TORUS_THROUGH, Potential
 
 ZERO = (0.0, 0.0, 0.0)
 OUTSIDE_TRIM, INSIDE_TRIM, CUT_BY_TRIM = 0, 1, 2
-# Halvings of a trimming curve's part, and parts that wait.
-MOST_HALVINGS = 10
-WAITING = 24
+# Parts of a trimming curve that wait, each with the parameters and the points of both its ends: a
+# stack has 144 numbers.
+WAITING, TRIM_PART = 24, 6
 
 
 @kernel
@@ -103,21 +103,38 @@ def meets(a, b):
 
 
 @kernel
-def part_box(side, piece, ta, tb):
-    """A box in (u, v) round a part of a piece of a trimming curve."""
-    o = side.own[S.R_PIECES] + S.PIECE_REALS * piece
-    m = side.numbers
-    box = S.Box(m[o + 2], m[o + 3], m[o + 4], m[o + 5])
-    bu, bv = m[o + S.P_BEND], m[o + S.P_BEND + 1]
-    if bu == inf or bv == inf:
-        return box
+def trim_point(side, piece, t):
+    """A point (u, v) of a piece of a trimming curve, in the chart itself."""
     coedge = side.own[side.own[S.PIECES] + S.PIECE_INTS * piece]
-    h2 = 0.125 * (tb - ta) * (tb - ta)
-    ua, va, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, ta)
-    ub, vb, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, tb)
+    u, v, _, _, _ = coedge_parameters(side.ints, side.reals, coedge, t)
+    return u, v
+
+
+@kernel
+def is_bent(side, piece):
+    """Is there no bound of how much a piece of a trimming curve bends?"""
+    o = side.own[S.R_PIECES] + S.PIECE_REALS * piece + S.P_BEND
+    return side.numbers[o] == inf or side.numbers[o + 1] == inf
+
+
+@kernel
+def whole_box(side, piece):
+    o = side.own[S.R_PIECES] + S.PIECE_REALS * piece + S.P_BOX
+    m = side.numbers
+    return S.Box(m[o], m[o + 1], m[o + 2], m[o + 3])
+
+
+@kernel
+def box_between(side, piece, length, p, q):
+    """A box in (u, v) round a part of a piece of a trimming curve, of so much of its parameter
+    between two points."""
+    box = whole_box(side, piece)
+    m, o = side.numbers, side.own[S.R_PIECES] + S.PIECE_REALS * piece
+    (ua, va), (ub, vb) = p, q
+    h2 = 0.125 * length * length
     shift = m[o + S.P_SHIFT]
-    spare_u = bu * h2 + PARAMETER_SPARE * (abs(ua) + abs(ub) + abs(shift))
-    spare_v = bv * h2 + PARAMETER_SPARE * (abs(va) + abs(vb))
+    spare_u = m[o + S.P_BEND] * h2 + PARAMETER_SPARE * (abs(ua) + abs(ub) + abs(shift))
+    spare_v = m[o + S.P_BEND + 1] * h2 + PARAMETER_SPARE * (abs(va) + abs(vb))
     return S.Box(
         max(box.u0, min(ua, ub) + shift - spare_u),
         min(box.u1, max(ua, ub) + shift + spare_u),
@@ -127,22 +144,63 @@ def part_box(side, piece, ta, tb):
 
 
 @kernel
+def part_box(side, piece, ta, tb):
+    """A box in (u, v) round a part of a piece of a trimming curve."""
+    if is_bent(side, piece):
+        return whole_box(side, piece)
+    p, q = trim_point(side, piece, ta), trim_point(side, piece, tb)
+    return box_between(side, piece, tb - ta, p, q)
+
+
+@kernel
+def put_part(stack, k, ends, p, q):
+    """Put a part of a trimming curve, with its points at both ends, in the k-th place."""
+    o = TRIM_PART * k
+    stack[o], stack[o + 1] = ends
+    stack[o + 2], stack[o + 3] = p
+    stack[o + 4], stack[o + 5] = q
+
+
+@kernel
+def put_whole(side, piece, stack):
+    """Put the whole of a piece in the first place."""
+    o = side.own[S.R_PIECES] + S.PIECE_REALS * piece
+    ta, tb = side.numbers[o + S.T0], side.numbers[o + S.T1]
+    put_part(stack, 0, (ta, tb), trim_point(side, piece, ta), trim_point(side, piece, tb))
+
+
+@kernel
+def part_in_place(stack, k):
+    """(parameters at both ends, the points there) of the k-th part."""
+    o = TRIM_PART * k
+    ends, p = (stack[o], stack[o + 1]), (stack[o + 2], stack[o + 3])
+    return ends, p, (stack[o + 4], stack[o + 5])
+
+
+@kernel
+def put_both_halves(side, piece, stack, k, part):
+    """Put both halves of a part in the k-th place and the next; one point is all that is new."""
+    (ta, tb), p, q = part
+    t = 0.5 * (ta + tb)
+    r = trim_point(side, piece, t)
+    put_part(stack, k, (ta, t), p, r)
+    put_part(stack, k + 1, (t, tb), r, q)
+
+
+@kernel
 def piece_meets(side, piece, box):
     """May a piece of a trimming curve meet a box? False is proven."""
-    o = side.own[S.R_PIECES] + S.PIECE_REALS * piece
-    m = side.numbers
-    whole = S.Box(m[o + 2], m[o + 3], m[o + 4], m[o + 5])
-    if not meets(whole, box):
+    if not meets(whole_box(side, piece), box):
         return False
-    if m[o + S.P_BEND] == inf or m[o + S.P_BEND + 1] == inf:
+    if is_bent(side, piece):
         return True
-    stack = reals_on_stack(48)
-    stack[0], stack[1] = m[o], m[o + 1]
+    stack = reals_on_stack(144)
+    put_whole(side, piece, stack)
     count, rounds = 1, 0
     while count > 0:
         count -= 1
-        ta, tb = stack[2 * count], stack[2 * count + 1]
-        part = part_box(side, piece, ta, tb)
+        ends, p, q = part_in_place(stack, count)
+        part = box_between(side, piece, ends[1] - ends[0], p, q)
         if not meets(part, box):
             continue
         rounds += 1
@@ -150,11 +208,9 @@ def piece_meets(side, piece, box):
             part.v1 - part.v0 <= 0.25 * (box.v1 - box.v0)
         )
         inside = box.u0 <= part.u0 and part.u1 <= box.u1 and box.v0 <= part.v0 and part.v1 <= box.v1
-        if inside or rounds > 40 or count >= 22 or (small and rounds > 20):
+        if inside or rounds > 40 or count >= WAITING - 2 or (small and rounds > 20):
             return True
-        tm = 0.5 * (ta + tb)
-        stack[2 * count], stack[2 * count + 1] = ta, tm
-        stack[2 * count + 2], stack[2 * count + 3] = tm, tb
+        put_both_halves(side, piece, stack, count, (ends, p, q))
         count += 2
     return False
 

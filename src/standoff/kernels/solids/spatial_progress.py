@@ -10,12 +10,15 @@ from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid,
 # rounding, the size, how many evaluations are allowed, up to which distance local minima are kept,
 # below which distance the boundaries meet. Then how many minima have room and how many were left
 # out, how many pairs of boxes stayed open and how many of them have room, the least bound of the
-# pair of leaves at hand; from OPEN_ROWS on the open pairs.
+# pair of leaves at hand, and after how many evaluations no further potential is tried for a pair of
+# parts, 0: each is; from OPEN_ROWS on the open pairs.
 LEAST, N_MINIMA, LEAF_A, LEAF_B, AT, OPEN, MET, TOLERANCE, ROUNDING, SIZE, BUDGET = (
     0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13,
 )  # fmt: skip
-ABOVE, MEETING, MOST_MINIMA, LOST, N_OPEN, MOST_OPEN, OF_LEAVES = 14, 15, 16, 17, 18, 19, 20
-BEST_REALS = OPEN_ROWS = 21
+ABOVE, MEETING, MOST_MINIMA, LOST, N_OPEN, MOST_OPEN, OF_LEAVES, STOP = (
+    14, 15, 16, 17, 18, 19, 20, 21,
+)  # fmt: skip
+BEST_REALS = OPEN_ROWS = 22
 # What an open pair holds: leaves (-1 - node where it is a node), both boxes, its bound.
 OPEN_REALS = 11
 # What a minimum holds: distance, leaves, parameters, bound; where local ones are kept both points
@@ -31,6 +34,12 @@ BOXES, STEPS, NODE_PAIRS, LEAF_PAIRS, BISECTIONS = 0, 1, 2, 3, 4
 def evaluations(counts):
     """Of points and of bounds: a step of Newton's method takes a point of both solids."""
     return counts[BOXES] + 2 * counts[STEPS] + counts[NODE_PAIRS]
+
+
+@small
+def is_stopped(best, counts):
+    """Is there no time for another potential?"""
+    return best[STOP] > 0.0 and evaluations(counts) > best[STOP]
 
 
 @small

@@ -58,6 +58,9 @@ FLAT_SPAN: Final = 8e6
 pairs a thousandth of the sizes apart may be as near; eight over the square of that length."""
 HELD_SLOPE: Final = 1e-6
 """Sine: a parameter at the side of a leaf is held there if the distance's slope is more."""
+LEAST_REST: Final = 1e-4
+"""Of the sizes: rows that are not due within this motion are not looked up meanwhile, so that the
+list of the others serves for many frames of solids that are nearly at rest."""
 MOTION_SPARE: Final = 1e-14
 """Relative, and of the sizes and the distances of the frames: for the rounding of a motion between
 two poses."""

@@ -8,7 +8,16 @@ from standoff.kernels.body.features import coedge_parameters, feature_jet, moved
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_minimum import nearest
-from standoff.kernels.solids.spatial_pieces import leaf_ints, leaf_jet, meets, part_box
+from standoff.kernels.solids.spatial_pieces import (
+    box_between,
+    is_bent,
+    leaf_ints,
+    leaf_jet,
+    meets,
+    part_box,
+    trim_point,
+    whole_box,
+)
 from standoff.kernels.solids.spatial_progress import middle
 
 # Places that are tried on each piece of a trimming curve, and on all of a leaf.
@@ -30,12 +39,16 @@ def within_box(side, piece, box):
     box."""
     o = side.own[S.R_PIECES] + S.PIECE_REALS * piece
     first, last = side.numbers[o], side.numbers[o + 1]
+    if is_bent(side, piece):
+        return (first, last) if meets(whole_box(side, piece), box) else (first, first)
     for _ in range(NARROWINGS):
         step = (last - first) / ON_A_PIECE
         low, high = last, first
+        q = trim_point(side, piece, first)
         for i in range(ON_A_PIECE):
             ta, tb = first + i * step, first + (i + 1) * step
-            if meets(part_box(side, piece, ta, tb), box):
+            p, q = q, trim_point(side, piece, tb)
+            if meets(box_between(side, piece, tb - ta, p, q), box):
                 low, high = min(low, ta), max(high, tb)
         if low >= high:
             return first, first
