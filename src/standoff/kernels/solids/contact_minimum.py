@@ -30,9 +30,9 @@ from standoff.kernels.solids.spatial_tolerances import (
     CONTACT_ERROR,
     CONTACT_ROUNDED,
     FLAT_VALLEY,
-    LEVEL_ENOUGH,
     NEARLY_LEVEL,
     PARALLEL_EDGES,
+    ROUGHLY_LEVEL,
     SLOPE_STEP,
     SURE_NORMAL,
 )
@@ -122,9 +122,16 @@ def across_way_out(hollow, edge, s, t):
         dt = (foot_s * level - foot * level_s) / det
         s = min(max(s - ds, low[0]), high[0])
         t = min(max(t - dt, low[1]), high[1])
-        if abs(ds) <= LEVEL_ENOUGH * step_s and abs(dt) <= LEVEL_ENOUGH * step_t:
+        if abs(ds) <= ROUGHLY_LEVEL * step_s and abs(dt) <= ROUGHLY_LEVEL * step_t:
             break
     return s, t
+
+
+@kernel
+def nearest_apart(a, b, away, first, counts):
+    """Parameters of the nearest points of two parts, of which B is moved away by a vector."""
+    moved = moved_side(b.side, away)
+    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, first, counts)[0]
 
 
 @kernel
@@ -152,7 +159,7 @@ def start_of(a, b, first, counts):
     jm = leaf_jet(moved, b.leaf, q[2], q[3])
     if length > 0.0 and not bends_up(ja, jm, FLAT_VALLEY):
         return q, away, False
-    return nearest(a.side, a.leaf, a.box, moved, b.leaf, b.box, first, counts)[0], away, True
+    return nearest_apart(a, b, away, first, counts), away, True
 
 
 @shared

@@ -16,6 +16,7 @@ from standoff.kernels.solids.contact_minimum import (
     is_signed_minimum,
     limits_of,
     middles_of,
+    nearest_apart,
     signed_minimum,
     start_of,
 )
@@ -178,13 +179,18 @@ def normal_in_leaves(a, b, q, best, counts):
 
 @kernel
 def look_in_leaves(a, leaf_a, b, leaf_b, fans, best, minima, counts):
-    """Newton's method in a pair of leaves, from where they are nearest moved apart."""
+    """Newton's method in a pair of leaves, from where they are nearest moved apart, or their
+    middles."""
     counts[LEAF_PAIRS] += 1
     pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
     if rests_for(pa, pb, 0.0, best) > 0.0:
         return
-    q, _, _ = start_of(pa, pb, middles_of(pa, pb), counts)
+    middles = middles_of(pa, pb)
+    q, away, nearest = start_of(pa, pb, middles, counts)
     found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
+    if not found and not nearest:
+        q = nearest_apart(pa, pb, away, middles, counts)
+        found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
     if found:
         keep_signed(a, b, fans, (leaf_a, leaf_b), (q, n, d), best[ABOVE], best, minima)
 

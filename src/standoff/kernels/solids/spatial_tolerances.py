@@ -89,7 +89,7 @@ CONTACT_ROUNDED: Final = 1e-15
 """The same, where no step makes it less: some roundings."""
 PARALLEL_EDGES: Final = 1e-5
 """Sine: edges at a smaller angle have no common normal of their own; `PIVOT` is its square."""
-LEVEL_ENOUGH: Final = 1e-6
+ROUGHLY_LEVEL: Final = 1e-6
 """Of the length of an edge's leaf: steps to where it is level with the way out of a hollow edge end
 below; Newton's method goes on from there."""
 SLOPE_STEP: Final = 1e-3
