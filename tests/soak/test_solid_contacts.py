@@ -59,10 +59,11 @@ def test_planted_faults_are_seen(rng: np.random.Generator) -> None:
     assert compared(contact, elsewhere, below, 1e-9)[0].lost == 1
 
 
-@pytest.mark.parametrize("block", [108, 246])
+@pytest.mark.parametrize("block", [108, 246, 265])
 def test_falls_whose_normals_were_once_lost(block: int) -> None:
     """Common normals above 0 that rested for half of their distance had left their leaves, unseen,
-    when the solids met."""
+    when the solids met; one that came from the next face was looked for from the middles of leaves
+    that bend both ways."""
     verdict, lines = judged_fall(block, 2, pairs_of(list(MAKERS)), BLOCK)
     assert lines == []
     assert verdict.minima > 10

@@ -20,6 +20,7 @@ from standoff.kernels.solids.contact_ends import keep_end
 from standoff.kernels.solids.contact_minimum import (
     middles_of,
     moved_side,
+    nearest_apart,
     start_of,
 )
 from standoff.kernels.solids.contact_search import (
@@ -226,10 +227,13 @@ def begin_again(pa, pb, front, k, turn, best, counts):
     """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d), from
     where they are nearest moved apart."""
     o, r = CONTACT_REALS * k, front.rows
-    tried = r[o + C_TOLD] in (CAME_TO_NONE, HELD)
+    tried, woken = r[o + C_TOLD] in (CAME_TO_NONE, HELD), r[o + C_REST] == -inf
     first = place_of(r, o) if tried else middles_of(pa, pb)
     start, away, nearest = start_of(pa, pb, first, counts)
     found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
+    if woken and not found and not nearest:  # one may have come in at a side
+        beside = nearest_apart(pa, pb, away, first, counts)
+        found, q, n, d = normal_in_leaves(pa, pb, beside, best, counts)
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
     free = 0.0 if found or not nearest else held_for(pa, pb, start, away, turn)
