@@ -35,7 +35,7 @@ def stirring(tracker: str, method: str, contact: sim.HuntCrossley, dt: float) ->
     return operator.run(operator.start(), ticks, every=ticks // 500)
 
 
-@pytest.mark.parametrize("tracker", only(["beside"], ["inside", "beside"]))
+@pytest.mark.parametrize("tracker", ["inside", "beside"])
 def test_energy_never_grows_in_scripted_contact(tracker: str) -> None:
     run = stirring(tracker, "semi-implicit", PASSIVE, 2e-5)
     own = run.energy.mechanical - run.energy.supplied

@@ -18,7 +18,7 @@ from standoff_studies.soak.failures import failure_facts, replay
 from standoff_studies.soak.running import Failure
 
 SEED = 5
-FRAMES = 8
+FRAMES = 12
 COMMON = ["--seed", SEED, "--frames", FRAMES]
 
 
@@ -38,9 +38,9 @@ def ledger(folder: Path) -> dict:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> dict:
-    """The ledger of 66 pairs in one process."""
+    """The ledger of 70 pairs in one process."""
     folder = tmp_path_factory.mktemp("whole")
-    arguments = ["--pairs", 66, *COMMON, "--jobs", 1, "-o", folder]
+    arguments = ["--pairs", 70, *COMMON, "--jobs", 1, "-o", folder]
     assert main(["soak", *map(str, arguments)]) == 0
     return ledger(folder)
 
@@ -80,7 +80,7 @@ def test_a_planted_fault_is_found_and_replayed(run, tmp_path, planted, monkeypat
 
 
 def test_counts_depend_on_the_seed_alone(run, tmp_path, whole):
-    assert run("--pairs", 66, *COMMON, "--jobs", 2, "-o", tmp_path / "2")[0] == 0
+    assert run("--pairs", 70, *COMMON, "--jobs", 2, "-o", tmp_path / "2")[0] == 0
     assert whole == ledger(tmp_path / "2")
     other = ["--pairs", 5, "--seed", SEED + 1, "--frames", FRAMES, "--jobs", 1]
     assert run(*other, "-o", tmp_path / "3")[0] == 0
@@ -96,7 +96,7 @@ def test_a_stopped_run_goes_on_to_the_same_counts(run, tmp_path, monkeypatch, wh
             raise KeyboardInterrupt
         return true(seed, frames, part, *rest)
 
-    arguments = ["--pairs", 66, *COMMON, "--jobs", 1, "-o", stopped]
+    arguments = ["--pairs", 70, *COMMON, "--jobs", 1, "-o", stopped]
     monkeypatch.setattr(processes, "run_part", interrupted)
     code, _, err = run(*arguments)
     assert code == 130

@@ -59,12 +59,12 @@ def test_planted_faults_are_seen(rng: np.random.Generator) -> None:
     assert compared(contact, elsewhere, below, 1e-9)[0].lost == 1
 
 
-@pytest.mark.parametrize("block", [108, 246, 265])
-def test_falls_whose_normals_were_once_lost(block: int) -> None:
+@pytest.mark.parametrize(("block", "least"), [(108, 10), (246, 10), (265, 3)])
+def test_falls_whose_normals_were_once_lost(block: int, least: int) -> None:
     """Common normals above 0 that rested for half of their distance had left their leaves, unseen,
     when the solids met; one that came from the next face was looked for from the middles of leaves
     that bend both ways."""
     verdict, lines = judged_fall(block, 2, pairs_of(list(MAKERS)), BLOCK)
     assert lines == []
-    assert verdict.minima > 3
+    assert verdict.minima > least
     assert verdict.wrong == verdict.lost == verdict.jumps == verdict.uncertified == 0

@@ -43,13 +43,13 @@ def test_golden_distances(
 
 @pytest.mark.parametrize("make", [planar_body, ellipse, stadium, clockwise, leaf])
 def test_against_brute_force_from_inside_to_outside(make: object) -> None:
-    """Distance, side and bounds at every twentieth frame, whatever the kinds of the curves."""
+    """Distance, side and bounds at every tenth frame, whatever the kinds of the curves."""
     body: so.Body = make()  # type: ignore[operator]
     path = Spiral(0.05, 0.08, 6.0, centre=(0.03, -0.02))
     run = so.points.record_point(so.PointTracker(body, 5e-3), path, np.arange(0.0, 3.0, 5e-3))
     assert all(answer.certified for answer in run.answers)
     assert {False, True} == set(run.inside.tolist())
-    for k in range(0, len(run), 20):
+    for k in range(0, len(run), 10):
         exact = to_boundary(body, run.point[k]) * (-1.0 if winding(body, run.point[k]) else 1.0)
         assert run.distance[k] == pytest.approx(exact, abs=1e-11)
         assert run.lower_bound[k] - 1e-12 <= exact <= run.upper_bound[k] + 1e-12
