@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -380,6 +381,13 @@ def test_what_stands_beside_the_nearest(told: Any) -> None:
     assert text.count(str(OVERLAP_COLOUR)) == 2
 
 
+def wait_until_drawn(page: ServedPage) -> None:
+    """What the page does now, it has drawn when it comes to what is asked of it next."""
+    drawn = threading.Event()
+    page._asked.put(drawn.set)
+    assert drawn.wait(15.0)
+
+
 def test_a_world_draws_what_it_tells_of_all_its_pairs_of_solids() -> None:
     """Two feet under a lid, and a ball beside both: of the lid and the ball, which are convex, the
     line of their pair. A world tells the nearest minimum, at both ends of its edge, or the deepest
@@ -395,6 +403,7 @@ def test_a_world_draws_what_it_tells_of_all_its_pairs_of_solids() -> None:
             there = over(height)
             page._asked.put(lambda there=there: stage._drag(0, TURNED, there.translation))
             until(lambda there=there: stage.live.poses[0, 1, 3] == there.translation[1])
+            wait_until_drawn(page)
             truth = heights(height)
             drawn = lines(page, "nearest", "others")
             lengths = np.linalg.norm(drawn[:, 1] - drawn[:, 0], axis=1)
@@ -410,6 +419,7 @@ def test_a_world_draws_what_it_tells_of_all_its_pairs_of_solids() -> None:
         page._asked.put(lambda: page.hand(1))
         page._asked.put(lambda: stage._drag(1, [1.0, 0.0, 0.0, 0.0], [4.72, 1.55, 0.5]))
         until(lambda: stage.live.poses[1, 0, 3] == 4.72)
+        wait_until_drawn(page)
         assert stage.live.answer.closest.names == ("lid", "ball")
         until(lambda: stage.picture._closest._label.text.startswith("lid – ball: "))
         assert not stage.picture._minima._label.visible
