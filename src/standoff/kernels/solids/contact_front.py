@@ -6,18 +6,20 @@ A pair of nodes rests by what is proven of it. In a pair of leaves that may hold
 Newton's method goes on in each frame from where it came to. Where it came to none it is tried again
 in one of some frames, or where a branch ends, or a common normal leaves its leaves, that may go
 on there; where the way there is held at a side of a leaf, not before the motion may have changed
-that. Two vertices have one normal, which comes to 0 when they meet, and not before.
+that, and where leaves that are curved round each other are apart, not before they may be half as
+far. Two vertices have one normal, which comes to 0 when they meet, and not before.
 """
 
 from math import inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import norm, scale, sub
+from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_ends import keep_end
 from standoff.kernels.solids.contact_minimum import (
+    first_normal,
     middles_of,
     moved_side,
     nearest_apart,
@@ -51,6 +53,7 @@ from standoff.kernels.solids.spatial_progress import (
     N_MINIMA,
     NODE_PAIRS,
     ROUNDING,
+    SIZE,
     evaluations,
     middle,
 )
@@ -62,12 +65,15 @@ from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
 C_A, C_B, C_REST, C_TOLD, C_AT = 0, 1, 2, 3, 4
 CONTACT_REALS = 8
 # Not looked at yet; came to a common normal; came to none; came to none, as the leaves moved apart
-# are nearest at a side of one, and rests while that can hardly have changed.
-UNSEEN, CAME, CAME_TO_NONE, HELD = 0.0, 1.0, 2.0, 3.0
+# are nearest at a side of one, and rests while that can hardly have changed; came to none, and is
+# apart, and rests until it may be near contact.
+UNSEEN, CAME, CAME_TO_NONE, HELD, APART = 0.0, 1.0, 2.0, 3.0, 4.0
 # Times the way of a common normal out of its leaves, within which it is looked for beside them.
 PAST_LEAF = 2.0
 # Of the distance of two vertices: how far B may move, in ticks, before they are looked at again.
 RESTS_ABOVE = 0.5
+# Of the distance of leaves that are curved round each other, the same.
+RESTS_APART = 0.5
 # Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
 MOST_RETRIED_IN = 4
 
@@ -163,12 +169,14 @@ def waits(front, k):
 
 
 @kernel
-def wake(both, front, x, y, reach):
+def wake(both, front, x, y, reach, retried):
     """Look again in the pairs of leaves in which Newton's method came to no common normal, and
-    which are as near as `reach` to a pair of points."""
+    which are as near as `reach` to a pair of points. `retried`: as of `find_contacts`."""
     rows = front.rows
     for k in range(int(front.store[N_ROWS])):
         o = CONTACT_REALS * k
+        if retried == 1 and rows[o + C_TOLD] == CAME_TO_NONE:
+            continue  # it is tried in this frame anyway
         if (
             waits(front, k)
             and is_near(both.a, int(rows[o + C_A]), x, reach)
@@ -192,7 +200,7 @@ def wake_alike(both, front, leaves):
 
 
 @kernel
-def wake_ended(both, front, reach):
+def wake_ended(both, front, reach, retried):
     """A branch that has ended may go on beside where it was, or anywhere on its features."""
     r = front.branches
     for i in range(int(front.store[N_BRANCHES])):
@@ -201,7 +209,7 @@ def wake_ended(both, front, reach):
             leaves = int(r[b + B_LEAVES]), int(r[b + B_LEAVES + 1])
             x, y = read_vector(r, b + B_POINTS), read_vector(r, b + B_POINTS + 3)
             wake_alike(both, front, leaves)
-            wake(both, front, x, y, reach)
+            wake(both, front, x, y, reach, retried)
 
 
 @kernel
@@ -210,7 +218,7 @@ def place_of(row, o):
 
 
 @kernel
-def wake_beside(both, front, k, q, best):
+def wake_beside(both, front, k, q, retried, best):
     """A common normal has left the leaves of a row, towards parameters `q` as Newton's method
     tells: look again in those where it may be now."""
     r, o = front.rows, CONTACT_REALS * k
@@ -219,7 +227,7 @@ def wake_beside(both, front, k, q, best):
     ka, kb = jets_at(both.a, leaf_a, both.b, leaf_b, q)
     went = max(norm(sub(ka[0], ja[0])), norm(sub(kb[0], jb[0])))
     reach = PAST_LEAF * went if went > 0.0 else best[ABOVE]
-    wake(both, front, ja[0], jb[0], reach)
+    wake(both, front, ja[0], jb[0], reach, retried)
 
 
 @kernel
@@ -227,7 +235,7 @@ def begin_again(pa, pb, front, k, turn, best, counts):
     """(whether Newton's method comes to a common normal of a row's leaves, parameters, n, d), from
     where they are nearest moved apart."""
     o, r = CONTACT_REALS * k, front.rows
-    tried, woken = r[o + C_TOLD] in (CAME_TO_NONE, HELD), r[o + C_REST] == -inf
+    tried, woken = r[o + C_TOLD] in (CAME_TO_NONE, HELD, APART), r[o + C_REST] == -inf
     first = place_of(r, o) if tried else middles_of(pa, pb)
     start, away, nearest = start_of(pa, pb, first, counts)
     found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
@@ -236,10 +244,26 @@ def begin_again(pa, pb, front, k, turn, best, counts):
         found, q, n, d = normal_in_leaves(pa, pb, beside, best, counts)
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
-    free = 0.0 if found or not nearest else held_for(pa, pb, start, away, turn)
-    if free > 0.0:
-        r[o + C_TOLD], r[o + C_REST] = HELD, front.store[GONE] + free
+    if not found:
+        free = held_for(pa, pb, start, away, turn) if nearest else apart_for(pa, pb, start, best)
+        if free > 0.0:
+            r[o + C_TOLD], r[o + C_REST] = HELD if nearest else APART, front.store[GONE] + free
     return found, q, n, d
+
+
+@kernel
+def apart_for(a, b, q, best):
+    """Of the motion of B that could bring two leaves, as parts, together, some, length: of their
+    distance along a normal at parameters `q`, less what their slopes make of it within the leaves;
+    0 or less where they may be near. What there is apart of them may be found later."""
+    ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
+    n = first_normal(a.side, a.leaf, ja, b.side, b.leaf, jb, q, best[SIZE])
+    d = dot(n, sub(jb[0], ja[0]))
+    u, v = 0.5 * (a.box.u1 - a.box.u0), 0.5 * (a.box.v1 - a.box.v0)
+    s, t = 0.5 * (b.box.u1 - b.box.u0), 0.5 * (b.box.v1 - b.box.v0)
+    of_a = abs(dot(n, ja[1])) * u + abs(dot(n, ja[2])) * v
+    of_b = abs(dot(n, jb[1])) * s + abs(dot(n, jb[2])) * t
+    return RESTS_APART * (d - of_a - of_b)
 
 
 @kernel
@@ -274,7 +298,7 @@ def look_at_leaves(both, front, k, turn, retried, best, minima, counts):
     free = rests_for(pa, pb, turn, best)
     if free > 0.0:
         r[o + C_REST] = front.store[GONE] + free
-        r[o + C_TOLD] = CAME_TO_NONE if r[o + C_TOLD] == HELD else r[o + C_TOLD]
+        r[o + C_TOLD] = CAME_TO_NONE if r[o + C_TOLD] >= HELD else r[o + C_TOLD]
         return
     if evaluations(counts) > best[BUDGET]:
         best[LOST] += 1.0
@@ -285,7 +309,7 @@ def look_at_leaves(both, front, k, turn, retried, best, minima, counts):
         if found:
             put_four(r, o + C_AT, q)
         else:
-            wake_beside(both, front, k, q, best)
+            wake_beside(both, front, k, q, retried, best)
     if not found:
         found, q, n, d = begin_again(pa, pb, front, k, turn, best, counts)
     if found:
@@ -363,7 +387,7 @@ def find_contacts(both, front, radius, retried, best, minima, counts):
     if store[N_ROWS] == 0.0 or grown:
         make_rows(front)
     follow_signed(both.a, both.b, both.fans, front, inf, best, minima, counts)
-    wake_ended(both, front, best[ABOVE])
+    wake_ended(both, front, best[ABOVE], retried)
     look_at_rows(both, front, radius, retried, best, minima, counts)
     look_at_woken(both, front, radius, retried, best, minima, counts)
     if store[MAKING] > 0.0 and best[LOST] == 0.0:

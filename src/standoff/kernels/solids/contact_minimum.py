@@ -120,8 +120,10 @@ def across_way_out(hollow, edge, s, t):
             break
         ds = (foot * level_t - foot_t * level) / det
         dt = (foot_s * level - foot * level_s) / det
-        s = min(max(s - ds, low[0]), high[0])
-        t = min(max(t - dt, low[1]), high[1])
+        before, s, t = (s, t), s - ds, t - dt
+        s, t = min(max(s, low[0]), high[0]), min(max(t, low[1]), high[1])
+        # level there, or held at the same ends again
+        ds, dt = s - before[0], t - before[1]
         if abs(ds) <= ROUGHLY_LEVEL * step_s and abs(dt) <= ROUGHLY_LEVEL * step_t:
             break
     return s, t
@@ -135,13 +137,44 @@ def nearest_apart(a, b, away, first, counts):
 
 
 @kernel
+def foot_on(box, jet, u, v, x):
+    """Parameters within a box near the foot of a point on a surface or curve: of the foot on its
+    tangent plane or line at (u, v), where it has a jet."""
+    delta, fu, fv = sub(x, jet[0]), jet[1], jet[2]
+    gu, gv = dot(delta, fu), dot(delta, fv)
+    uu, uv, vv = dot(fu, fu), dot(fu, fv), dot(fv, fv)
+    det = uu * vv - uv * uv
+    if det > 0.0:
+        u, v = u + (gu * vv - gv * uv) / det, v + (gv * uu - gu * uv) / det
+    elif uu > 0.0:
+        u += gu / uu
+    return min(max(u, box.u0), box.u1), min(max(v, box.v0), box.v1)
+
+
+@kernel
+def foot_of_middle(a, b, q, ja, jb):
+    """Parameters of the middle of a part, of an edge rather than of a face and else of the smaller
+    one, and near its foot on the other part; `q`: both middles, with their jets."""
+    u, v, s, t = q
+    of_a, of_b = norm(ja[2]) > 0.0, norm(jb[2]) > 0.0
+    first = ball_round(a)[1] <= ball_round(b)[1] if of_a == of_b else of_b
+    if first:
+        s, t = foot_on(b.box, jb, s, t, ja[0])
+    else:
+        u, v = foot_on(a.box, ja, u, v, jb[0])
+    return (u, v, s, t)
+
+
+@kernel
 def start_of(a, b, first, counts):
     """(parameters from which Newton's method may come to a common normal of two parts, the vector
     by which B was moved away for it, whether they are nearest there): along a normal of one, by as
     much as both are long, from `first` on.
 
     Where one is hollow, as a bore round a pin, they are nearest at their sides wherever both have a
-    common normal; it is then looked for from their middles."""
+    common normal; it is then looked for from the middle of one, and its foot on the other. The
+    middles of both would not do: along a thread a common normal runs far for a small motion, and a
+    first step that also has to find the foot leads past it."""
     q = middles_of(a, b)
     ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
     if norm(ja[1]) > 0.0 and norm(jb[1]) > 0.0:
@@ -158,7 +191,7 @@ def start_of(a, b, first, counts):
     moved = moved_side(b.side, away)
     jm = leaf_jet(moved, b.leaf, q[2], q[3])
     if length > 0.0 and not bends_up(ja, jm, FLAT_VALLEY):
-        return q, away, False
+        return foot_of_middle(a, b, q, ja, jb), away, False
     return nearest_apart(a, b, away, first, counts), away, True
 
 
