@@ -18,8 +18,10 @@ from standoff.kernels.dynamics.arrays import (
     P_ROUNDING,
     P_SIZE,
     P_SPAN,
+    P_STIFFNESS,
     P_TOLERANCE,
     S_JUMPS,
+    S_SHARED,
     bodies_of,
     body_ints,
     body_row,
@@ -32,9 +34,10 @@ from standoff.kernels.dynamics.arrays import (
 from standoff.kernels.dynamics.forces import Spot, clear_touch, press
 from standoff.kernels.dynamics.pair_motion import write_motion
 from standoff.kernels.dynamics.rigid_body import put
+from standoff.kernels.dynamics.shared_springs import shared_since
 from standoff.kernels.pair.events import N_COUNT_SLOTS
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.contact_frame import MOST_NORMALS, Choices, contact_frame
+from standoff.kernels.solids.contact_frame import MOST_NORMALS, Choices, contact_frame, pose_at
 from standoff.kernels.solids.contact_front import MOST_RETRIED_IN, Both
 from standoff.kernels.solids.contact_places import (
     F_ENDED,
@@ -161,11 +164,15 @@ def track_solids(system, pair, state, counts, scratch):
     for side, why in ((POSE_A, BAD_POSE_A), (POSE_B, BAD_POSE_B)):
         if not is_pose(pointer(m, side)):
             return why
+    kept = pointer(state, kept_row(system, pair))
+    made, count, before = kept[F_MADE], int(kept[F_SPOTS]), pose_at(kept)
     find_places(system, pair, state, counts, scratch)
     out = pointer(state, pair_row(system, pair) + N_STATE)
-    kept = pointer(state, kept_row(system, pair))
     tell_pair(kept, scratch.contact, pointer(m, POSE_A), out)
     state[S_JUMPS] += kept[F_ENDED]
+    if made > 0.0:
+        stiffness = system.numbers[pair_numbers(system, pair) + P_STIFFNESS]
+        state[S_SHARED] += shared_since(stiffness, kept, count, before)
     return FINE
 
 
@@ -199,8 +206,9 @@ def tell_pair(kept, best, pose_a, out):
         put(add(rotate(R, read_vector(kept, at + P_B)), p), out, POINT_B)
         put(rotate(R, read_vector(kept, at + P_NORMAL)), out, NORMAL)
         out[STATUS] = LOCAL if least < 0.0 else TRACKING
-    # an overlap of which nothing is felt is no contact that is known
-    if kept[F_LOST] > 0.0 or (at < 0 and kept[F_PLACES] > 0.0):
+    # an overlap of which nothing is felt is no contact that is known, nor are spots beside no place
+    unknown = at < 0 and (kept[F_PLACES] > 0.0 or kept[F_SPOTS] > 0.0)
+    if kept[F_LOST] > 0.0 or unknown:
         out[STATUS] = NOT_CERTIFIED
 
 
