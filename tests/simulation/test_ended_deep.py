@@ -45,6 +45,9 @@ def test_what_is_pressed_too_deep_ends() -> None:
     run = operator.run(operator.start(), 400, 1)
     energy = run.energy
     assert run.jumps == 1
+    # one corner is told for a tick after its place: what pushes is never taken for far
+    assert run.uncertified == 1
+    assert (run.distances[run.spots > 0] < 0.0).all()
     assert run.deepest == pytest.approx(8e-4, rel=0.06)
     assert energy.stored[-1] == 0.0
     assert energy.stored.max() > 2e-3

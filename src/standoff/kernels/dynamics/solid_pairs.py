@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 
 from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
-from standoff.kernels.algebra.vectors import add, norm, rotate
+from standoff.kernels.algebra.vectors import add, axpy, norm, rotate
 from standoff.kernels.compiler.decorators import ahead, kernel, pointer
 from standoff.kernels.dynamics.arrays import (
     B_SOLID,
@@ -186,6 +186,22 @@ def begin_solids(system, state, counts, scratch):
 
 
 @kernel
+def tell_spots(kept, pose_a, out):
+    """The row of a pair's answer where spots push and no place is known: of the deepest one."""
+    at = spot_at(0)
+    for k in range(1, int(kept[F_SPOTS])):
+        if kept[spot_at(k) + S_DEPTH] > kept[at + S_DEPTH]:
+            at = spot_at(k)
+    R, depth = read_rotation(pose_a, 0), kept[at + S_DEPTH]
+    n, x = rotate(R, read_vector(kept, at + S_NORMAL)), rotate(R, read_vector(kept, at))
+    middle = add(x, read_vector(pose_a, 9))
+    out[DISTANCE], out[LOWER_BOUND], out[UPPER_BOUND] = -depth, -inf, -depth
+    put(axpy(0.5 * depth, n, middle), out, POINT_A)
+    put(axpy(-0.5 * depth, n, middle), out, POINT_B)
+    put(n, out, NORMAL)
+
+
+@kernel
 def tell_pair(kept, best, pose_a, out):
     """The row of a pair's answer: of the deepest place that is felt, or the nearest."""
     for k in range(N_OUT):
@@ -195,7 +211,9 @@ def tell_pair(kept, best, pose_a, out):
         o = place_at(k)
         if kept[o + P_FELT] > 0.0 and kept[o + P_DISTANCE] < least:
             at, least = o, kept[o + P_DISTANCE]
-    if at < 0:
+    if at < 0 and kept[F_SPOTS] > 0.0:
+        tell_spots(kept, pose_a, out)
+    elif at < 0:
         # beyond it there is no place, so that none begins a contact
         out[DISTANCE], out[LOWER_BOUND], out[UPPER_BOUND] = best[ABOVE], -inf, inf
         out[STATUS] = FAR
