@@ -16,9 +16,9 @@ DT = 1e-3
 def test_places_that_merge_push_on() -> None:
     """A peg that is tilted in its hole is pressed at its rim, and at the hole's on the other side.
     For some ticks both are one place; each pushes on as a spot where it was, and none has ended."""
-    ticks, last = 16_710, 60
+    begun, ticks, last = 15.4, 1320, 60
     operator = coupled(1.0 / DT)
-    moved = DeviceReadings.along(hand, ticks, DT)
+    moved = DeviceReadings.along(lambda t: hand(begun + t), ticks, DT)
     run = operator.run(operator.start().engage(), ticks, 1, device=moved, contacts=True)
     contacts = [run.contacts(k)[0] for k in range(ticks - last, ticks + 1)]
     felt = np.array([sum(place.felt for place in each.places) for each in contacts])
