@@ -76,9 +76,9 @@ def solve_bodies(
         )
     if any(system.of_solids):
         raise StandoffError(
-            "The system has a pair with a Solid, whose places of contact go on from tick to tick: an "
-            "Operator follows them, an adaptive method, whose evaluations go back and forth, does "
-            "not.",
+            "The system has a pair with a Solid, whose places of contact go on from tick to tick: "
+            "an Operator follows them, an adaptive method, whose evaluations go back and forth, "
+            "does not.",
             "system",
             system,
         )
