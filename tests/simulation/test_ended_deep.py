@@ -9,6 +9,7 @@ from benchmarks.solid_servo import coupled, hand
 import standoff as so
 from standoff.simulation import DeviceReadings, HuntCrossley, Operator, RigidBody, System
 from standoff.solids import Solid
+from standoff_studies.soak import solid_corners
 
 DT = 1e-3
 
@@ -53,3 +54,11 @@ def test_what_is_pressed_too_deep_ends() -> None:
     assert energy.stored.max() > 2e-3
     assert energy.shared[-1] == pytest.approx(-energy.stored.max(), rel=0.1)
     assert np.ptp(energy.balance) < 0.01 * energy.kinetic[0]
+
+
+def test_a_contact_that_is_missed_in_a_tick_is_felt_in_the_next() -> None:
+    """A drum is pressed into a hole so fast that in some ticks nothing of it is found. It does not
+    sink: what is found again has been felt before."""
+    found, _ = solid_corners.judged_press(22, 1, 1200)
+    assert found.ticks == 1200  # it ends where a point is deeper than a fall explains
+    assert found.overlaps > 20

@@ -69,10 +69,12 @@ SPOT = -3.0
 MOST_SPRINGS = 4.0
 # What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
 # whether there was no room or time for some; how many that were felt ended in this frame without
-# coming to 0; how many spots; what B moved in each of the last frames, in turn; then the store of
-# the front, its branches, the places, the spots, those of the frame before, and the front's rows
-# with how long they rest.
-F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS, F_STEPS = 0, 1, 13, 14, 15, 16, 17
+# coming to 0; how many spots; how many of an earlier frame are kept, and for how many frames there
+# were none since; what B moved in each of the last frames, in turn; then the store of the front,
+# its branches, the places, the spots, those of the last frame before that had some, and the front's
+# rows with how long they rest.
+F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS = 0, 1, 13, 14, 15, 16
+F_EARLIER, F_NONE_FOR, F_STEPS = 17, 18, 19
 F_STORE = F_STEPS + MOST_RETRIED_IN
 F_BRANCHES = F_STORE + STORE_REALS
 F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
@@ -132,10 +134,10 @@ def goes_on(kept, at, n, d, step):
 
 @kernel
 def was_felt(kept, minima, o, d, reach, step):
-    """Does a pair of points go on from a spot of the frame before that was as near as `reach`, or
-    from a place that was felt?"""
+    """Does a pair of points go on from a spot of the last frame that had some, which was as near as
+    `reach`, or from a place that was felt?"""
     middle, n = middle_of_pair(minima, o + POINTS), normal_of(minima, o)
-    for k in range(int(kept[F_SPOTS])):
+    for k in range(int(kept[F_EARLIER])):
         at = F_BEFORE + SPOT_REALS * k
         near = norm(sub(read_vector(kept, at), middle)) <= reach
         alike = dot(read_vector(kept, at + S_NORMAL), n) >= ALIKE
@@ -352,6 +354,21 @@ def share_springs(kept, span):
 
 
 @kernel
+def recall_spots(kept, count):
+    """Keep the spots of the frame before as earlier ones. Where it had none, those before it stay
+    for as many frames as may pass before Newton's method is tried again: what was missed in one
+    must not be new in the next."""
+    if count > 0:
+        for k in range(SPOT_REALS * count):
+            kept[F_BEFORE + k] = kept[F_SPOT + k]
+        kept[F_EARLIER], kept[F_NONE_FOR] = count, 0.0
+        return
+    kept[F_NONE_FOR] += 1.0
+    if kept[F_NONE_FOR] >= MOST_RETRIED_IN:
+        kept[F_EARLIER] = 0.0
+
+
+@kernel
 def tell_places(both, front, asked, best, minima, sets, kept):
     """The places of a frame and their spots into what is kept, of the common normals that were
     found; how many places."""
@@ -365,8 +382,7 @@ def tell_places(both, front, asked, best, minima, sets, kept):
     number_sets(front, minima, sets, n, branch_reach(best[SIZE], asked.step), 0)
     renew_branches(front, minima, sets, n)
     count = int(kept[F_SPOTS])
-    for k in range(SPOT_REALS * count):
-        kept[F_BEFORE + k] = kept[F_SPOT + k]
+    recall_spots(kept, count)
     felt = ahead(sets, SET_REALS * n)  # behind them there is room
     for k in range(n):
         row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
