@@ -214,7 +214,8 @@ def tell(machine: Machine, seconds: float) -> None:
         f"{1e3 * found.took[0]:.0f} ms; median {1e6 * np.median(found.worked) / GPU:.0f} times the "
         f"GPU's {GPU:.0f} us\n"
         f"    {run.uncertified} not certified, {run.jumps} ended deep; deepest "
-        f"{1e6 * run.deepest:.1f} um; energy {np.ptp(energy.balance):.1e} of {moved:.1e} J\n"
+        f"{1e6 * run.deepest:.1f} um\n    energy off by {np.ptp(energy.balance):.1e} of "
+        f"{moved:.1e} J, {energy.shared[-1]:.1e} J more by sharing springs\n"
         f"    {machine.off(run.final, turned(run)[-1])}",
         flush=True,
     )

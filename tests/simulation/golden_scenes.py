@@ -102,6 +102,10 @@ SCENES = {
 }
 
 
+ENERGIES = ("kinetic", "potential", "stored", "dissipated", "supplied")
+"""That stored traces have; convex bodies share no springs, and their states' header says so."""
+
+
 class Trace(NamedTuple):
     """(n, k) arrays of a run's records, and a digest of every bit of them and of the trackers."""
 
@@ -117,7 +121,7 @@ def trace(name: str) -> Trace:
     operator, ticks, overlap = make(tracker)
     run = operator.run(operator.start(allow_overlap=overlap), ticks, every=ticks // RECORDS)
     end = K.STATE_HEADER + K.N_BODY * len(operator.system.bodies)
-    energies = np.stack(run.energy, axis=1)
+    energies = np.stack([getattr(run.energy, name) for name in ENERGIES], axis=1)
     bits = run.states.tobytes() + energies.tobytes() + run.forces.tobytes()
     digest = hashlib.sha256(bits).hexdigest()
     return Trace(run.states[:, :end], energies, run.forces[:, 0], run.spots, digest)

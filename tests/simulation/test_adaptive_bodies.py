@@ -8,6 +8,7 @@ from scenes_with_contact import FLOOR, G, on_floor, upright
 
 import standoff as so
 from standoff import simulation as sim
+from standoff.solids import Solid
 
 NONE = sim.HuntCrossley(stiffness=1.0)
 
@@ -138,3 +139,11 @@ def test_what_a_system_cannot_be_given_is_refused() -> None:
     coupled = sim.System(system.bodies, sim.HuntCrossley(stiffness=1e6), coupler=coupler, tool=1)
     with pytest.raises(so.StandoffError, match="has a coupler"):
         sim.solve(coupled, duration=0.01)
+
+
+def test_solids_are_refused() -> None:
+    """Their places of contact go on from tick to tick, which an adaptive method has not."""
+    box = Solid(so.shapes.box(0.1, 0.1, 0.1))
+    bodies = [sim.RigidBody.fixed(box), sim.RigidBody.free(box, mass=1.0, pose=upright(0.2))]
+    with pytest.raises(so.StandoffError, match="pair with a Solid"):
+        sim.solve(sim.System(bodies, NONE), duration=0.01)

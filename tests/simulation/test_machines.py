@@ -124,7 +124,10 @@ def test_a_nut_runs_down_its_bolt() -> None:
     inertia = mass.inertia[2, 2] + mass.mass * rise**2
     spin = run.angular_velocities(1)[-1, 2]
     assert 0.5 * inertia * spin**2 == pytest.approx(-force * turn[-1], rel=0.02)
-    assert np.ptp(run.energy.balance) < 0.01 * np.ptp(run.energy.potential)
+    # a spot has more of a spring as it is pressed deeper than those beside it: no force gives that
+    moved = np.ptp(run.energy.potential)
+    assert np.ptp(run.energy.balance) < 0.01 * moved
+    assert np.abs(run.energy.shared).max() < 0.02 * moved
 
 
 def test_the_force_on_an_exact_nut_hardly_ripples() -> None:

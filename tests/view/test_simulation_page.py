@@ -136,7 +136,7 @@ def test_the_panel_tells_depths_forces_statuses_and_energies(page: Any, run: Sys
     assert float(told(panel, "distance")) == pytest.approx(-DEPTH, rel=1e-3)
     assert float(told(panel, "deepest").split()[0]) == pytest.approx(run.deepest, rel=1e-3)
     assert told(panel, "certified") == "all so far"
-    for name in ("kinetic", "potential", "stored", "dissipated", "supplied", "balance"):
+    for name in ("kinetic", "potential", "stored", "dissipated", "supplied", "shared", "balance"):
         expected = float(getattr(run.energy, name)[-1])
         assert float(told(panel, name)) == pytest.approx(expected, rel=1e-5, abs=1e-15)
     # An arrow's length is that of its force, as the panel says.

@@ -156,9 +156,10 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
 
 def _energy_lines(run: SystemRun, unit: Units) -> list[str]:
     energy = run.energy
+    names = ["kinetic", "stored", "dissipated", "supplied"]
+    names += ["shared"] if any(run.system.of_solids) else []
     told = ", ".join(
-        f"{name} {getattr(energy, name)[-1] + 0.0:.6g} {unit.energy}"
-        for name in ("kinetic", "stored", "dissipated", "supplied")
+        f"{name} {getattr(energy, name)[-1] + 0.0:.6g} {unit.energy}" for name in names
     )
     drift = np.abs(energy.balance - energy.balance[0]).max()
     return [line("energy", told), line("", f"its balance drifted by {drift:.3g} {unit.energy}")]

@@ -74,6 +74,14 @@ def solve_bodies(
             "system",
             system,
         )
+    if any(system.of_solids):
+        raise StandoffError(
+            "The system has a pair with a Solid, whose places of contact go on from tick to tick: "
+            "an Operator follows them, an adaptive method, whose evaluations go back and forth, "
+            "does not.",
+            "system",
+            system,
+        )
     legs = _Bodies(system, float(options["max_step"]), allow_overlap)
     found = legs.solve(0.0, np.zeros(WIDTH * len(legs.free) + 2), end, options)
     states = np.array(found.states)

@@ -26,6 +26,9 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "bl
 HANDLE = "#7F7F7F"
 """Grey: of a coupler and its device."""
 
+SHOWN_IF_ANY = ("supplied", "by sharing springs")
+"""Energies that many systems have none of."""
+
 DASHES = ("-", "--", ":")
 """Of x, y and z."""
 
@@ -127,9 +130,10 @@ def _energies(axes: Axes, run: SystemRun) -> None:
         "dissipated": energy.dissipated,
         "supplied": energy.supplied,
         "balance": energy.balance - floor,
+        "by sharing springs": energy.shared,
     }
     for colour, (name, values) in zip(COLOURS, lines.items(), strict=False):
-        if name != "supplied" or np.any(values != 0.0):
+        if name not in SHOWN_IF_ANY or np.any(values != 0.0):
             dashes = "--" if name == "balance" else "-"
             axes.plot(run.times, values, dashes, color=colour, label=name)
     if run.coupler is not None:

@@ -130,6 +130,7 @@ class SystemRun(KeepsReadOnly):
             self.accounts[:, E.A_STORED],
             self.states[:, K.S_LOST],
             self.states[:, K.S_GIVEN],
+            self.states[:, K.S_SHARED],
         )
 
     @property

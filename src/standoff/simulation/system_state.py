@@ -37,6 +37,10 @@ class Energy(NamedTuple):
         Lost in the contacts since the start, by damping and friction.
     supplied : float or array
         Given by driven bodies and by a coupler's wrench on its tool since the start.
+    shared : float or array
+        What the springs of solids' contacts hold more since the start by no work, because they
+        were shared anew among their spots; less than zero where they hold less. These forces are
+        no gradient of an energy, and this is what comes of that.
     """
 
     kinetic: Any
@@ -44,6 +48,7 @@ class Energy(NamedTuple):
     stored: Any
     dissipated: Any
     supplied: Any
+    shared: Any = 0.0
 
     @property
     def mechanical(self) -> Any:
@@ -52,9 +57,9 @@ class Energy(NamedTuple):
 
     @property
     def balance(self) -> Any:
-        """What no step of an exact method changes: mechanical plus dissipated less supplied
-        energy."""
-        return self.mechanical + self.dissipated - self.supplied
+        """What no step of an exact method changes: mechanical plus dissipated less supplied and
+        shared energy."""
+        return self.mechanical + self.dissipated - self.supplied - self.shared
 
 
 @dataclass(frozen=True, eq=False)

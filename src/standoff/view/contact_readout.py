@@ -82,7 +82,7 @@ def simulation_readout(instant: Instant, given: Simulated, arrows: Arrows, more:
 
 def energy_table(energy: Energy, units: Units) -> str:
     """Return the table of energies, as HTML."""
-    names = ("kinetic", "potential", "stored", "dissipated", "supplied", "balance")
+    names = ("kinetic", "potential", "stored", "dissipated", "supplied", "shared", "balance")
     told = ((name, length(getattr(energy, name) + 0.0, units.energy, 6)) for name in names)
     return ENERGIES.format("".join(ROW.format(name, name, escape(text)) for name, text in told))
 

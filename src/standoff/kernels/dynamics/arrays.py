@@ -51,10 +51,10 @@ REAL_PAIR = 9
 
 # The state: time, energy lost in contacts, energy that driven bodies and a coupler gave, the
 # greatest depth so far, ticks with a pair that was not certified, places of contact of solids that
-# ended deep; a row a body; a row a pair; a
-# coupler's own (``coupler_arrays``); and, not recorded, what pairs of solids have kept
+# ended deep, energy that springs of solids' contacts have by being shared anew; a row a body; a row
+# a pair; a coupler's own (``coupler_arrays``); and, not recorded, what pairs of solids have kept
 # (``kernels.solids.contact_places``) and the polytopes that pairs in penetration have.
-S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED, S_JUMPS = range(6)
+S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED, S_JUMPS, S_SHARED = range(7)
 STATE_HEADER = 8
 X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
 N_BODY = 18

@@ -28,6 +28,18 @@ class Push(NamedTuple):
 
 
 @kernel
+def spring_of(stiffness, share, depth):
+    """The force of a spot's part of a spring that is pressed so deep."""
+    return share * stiffness * depth * sqrt(depth)
+
+
+@kernel
+def stored_in(spring, depth):
+    """The energy in a spring whose force is `spring` at a depth: of all depths up to it."""
+    return 0.4 * spring * depth
+
+
+@kernel
 def spot_push(material, share, depth, n, velocity):
     """F = share k d^1.5 (1 + 1.5 c d'), which never pulls, and friction against the slip.
 
@@ -36,7 +48,7 @@ def spot_push(material, share, depth, n, velocity):
     above the slip speed, viscous below it.
     """
     closing = -dot(n, velocity)
-    spring = share * material.stiffness * depth * sqrt(depth)
+    spring = spring_of(material.stiffness, share, depth)
     normal = max(0.0, spring * (1.0 + 1.5 * material.damping * closing))
     slipping = axpy(closing, n, velocity)
     square = dot(slipping, slipping)
@@ -45,4 +57,5 @@ def spot_push(material, share, depth, n, velocity):
     if material.friction > 0.0:
         grip = material.friction * normal / sqrt(square + material.slip * material.slip)
     force = axpy(-grip, slipping, scale(normal, n))
-    return Push(force, 0.4 * spring * depth, (normal - spring) * closing + grip * square)
+    lost = (normal - spring) * closing + grip * square
+    return Push(force, stored_in(spring, depth), lost)

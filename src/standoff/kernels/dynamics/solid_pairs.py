@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import inf
 
 from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
-from standoff.kernels.algebra.vectors import add, norm, rotate
+from standoff.kernels.algebra.vectors import add, axpy, norm, rotate
 from standoff.kernels.compiler.decorators import ahead, kernel, pointer
 from standoff.kernels.dynamics.arrays import (
     B_SOLID,
@@ -18,8 +18,10 @@ from standoff.kernels.dynamics.arrays import (
     P_ROUNDING,
     P_SIZE,
     P_SPAN,
+    P_STIFFNESS,
     P_TOLERANCE,
     S_JUMPS,
+    S_SHARED,
     bodies_of,
     body_ints,
     body_row,
@@ -32,9 +34,10 @@ from standoff.kernels.dynamics.arrays import (
 from standoff.kernels.dynamics.forces import Spot, clear_touch, press
 from standoff.kernels.dynamics.pair_motion import write_motion
 from standoff.kernels.dynamics.rigid_body import put
+from standoff.kernels.dynamics.shared_springs import shared_since
 from standoff.kernels.pair.events import N_COUNT_SLOTS
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.contact_frame import MOST_NORMALS, Choices, contact_frame
+from standoff.kernels.solids.contact_frame import MOST_NORMALS, Choices, contact_frame, pose_at
 from standoff.kernels.solids.contact_front import MOST_RETRIED_IN, Both
 from standoff.kernels.solids.contact_places import (
     F_ENDED,
@@ -161,11 +164,15 @@ def track_solids(system, pair, state, counts, scratch):
     for side, why in ((POSE_A, BAD_POSE_A), (POSE_B, BAD_POSE_B)):
         if not is_pose(pointer(m, side)):
             return why
+    kept = pointer(state, kept_row(system, pair))
+    made, count, before = kept[F_MADE], int(kept[F_SPOTS]), pose_at(kept)
     find_places(system, pair, state, counts, scratch)
     out = pointer(state, pair_row(system, pair) + N_STATE)
-    kept = pointer(state, kept_row(system, pair))
     tell_pair(kept, scratch.contact, pointer(m, POSE_A), out)
     state[S_JUMPS] += kept[F_ENDED]
+    if made > 0.0:
+        stiffness = system.numbers[pair_numbers(system, pair) + P_STIFFNESS]
+        state[S_SHARED] += shared_since(stiffness, kept, count, before)
     return FINE
 
 
@@ -179,6 +186,22 @@ def begin_solids(system, state, counts, scratch):
 
 
 @kernel
+def tell_spots(kept, pose_a, out):
+    """The row of a pair's answer where spots push and no place is known: of the deepest one."""
+    at = spot_at(0)
+    for k in range(1, int(kept[F_SPOTS])):
+        if kept[spot_at(k) + S_DEPTH] > kept[at + S_DEPTH]:
+            at = spot_at(k)
+    R, depth = read_rotation(pose_a, 0), kept[at + S_DEPTH]
+    n, x = rotate(R, read_vector(kept, at + S_NORMAL)), rotate(R, read_vector(kept, at))
+    middle = add(x, read_vector(pose_a, 9))
+    out[DISTANCE], out[LOWER_BOUND], out[UPPER_BOUND] = -depth, -inf, -depth
+    put(axpy(0.5 * depth, n, middle), out, POINT_A)
+    put(axpy(-0.5 * depth, n, middle), out, POINT_B)
+    put(n, out, NORMAL)
+
+
+@kernel
 def tell_pair(kept, best, pose_a, out):
     """The row of a pair's answer: of the deepest place that is felt, or the nearest."""
     for k in range(N_OUT):
@@ -188,7 +211,9 @@ def tell_pair(kept, best, pose_a, out):
         o = place_at(k)
         if kept[o + P_FELT] > 0.0 and kept[o + P_DISTANCE] < least:
             at, least = o, kept[o + P_DISTANCE]
-    if at < 0:
+    if at < 0 and kept[F_SPOTS] > 0.0:
+        tell_spots(kept, pose_a, out)
+    elif at < 0:
         # beyond it there is no place, so that none begins a contact
         out[DISTANCE], out[LOWER_BOUND], out[UPPER_BOUND] = best[ABOVE], -inf, inf
         out[STATUS] = FAR
@@ -199,8 +224,9 @@ def tell_pair(kept, best, pose_a, out):
         put(add(rotate(R, read_vector(kept, at + P_B)), p), out, POINT_B)
         put(rotate(R, read_vector(kept, at + P_NORMAL)), out, NORMAL)
         out[STATUS] = LOCAL if least < 0.0 else TRACKING
-    # an overlap of which nothing is felt is no contact that is known
-    if kept[F_LOST] > 0.0 or (at < 0 and kept[F_PLACES] > 0.0):
+    # an overlap of which nothing is felt is no contact that is known, nor are spots beside no place
+    unknown = at < 0 and (kept[F_PLACES] > 0.0 or kept[F_SPOTS] > 0.0)
+    if kept[F_LOST] > 0.0 or unknown:
         out[STATUS] = NOT_CERTIFIED
 
 

@@ -56,10 +56,10 @@ from standoff.kernels.solids.stationary import is_stationary
 P_KEY, P_FELT, P_DISTANCE, P_NORMAL, P_A, P_B = 0, 1, 2, 3, 6, 9
 PLACE_REALS = 12
 MOST_PLACES = MOST_SETS
-# What a spot holds: where it is, its normal, its depth, its share of a spring, and how many springs
-# there are along its normal.
-S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS = 0, 3, 6, 7, 8
-SPOT_REALS = 9
+# What a spot holds: where it is, its normal, its depth, its share of a spring, how many springs
+# there are along its normal, and 1 where it is a place or was one.
+S_POINT, S_NORMAL, S_DEPTH, S_SHARE, S_SPRINGS, S_PLACE = 0, 3, 6, 7, 8, 9
+SPOT_REALS = 10
 MOST_SPOTS = 96
 MOST_ROWS = 32768
 # Of a common normal that is felt as a spot, once the places are told: this less the number of the
@@ -69,10 +69,12 @@ SPOT = -3.0
 MOST_SPRINGS = 4.0
 # What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
 # whether there was no room or time for some; how many that were felt ended in this frame without
-# coming to 0; how many spots; what B moved in each of the last frames, in turn; then the store of
-# the front, its branches, the places, the spots, those of the frame before, and the front's rows
-# with how long they rest.
-F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS, F_STEPS = 0, 1, 13, 14, 15, 16, 17
+# coming to 0; how many spots; how many of an earlier frame are kept, and for how many frames there
+# were none since; what B moved in each of the last frames, in turn; then the store of the front,
+# its branches, the places, the spots, those of the last frame before that had some, and the front's
+# rows with how long they rest.
+F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS = 0, 1, 13, 14, 15, 16
+F_EARLIER, F_NONE_FOR, F_STEPS = 17, 18, 19
 F_STORE = F_STEPS + MOST_RETRIED_IN
 F_BRANCHES = F_STORE + STORE_REALS
 F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
@@ -132,10 +134,10 @@ def goes_on(kept, at, n, d, step):
 
 @kernel
 def was_felt(kept, minima, o, d, reach, step):
-    """Does a pair of points go on from a spot of the frame before that was as near as `reach`, or
-    from a place that was felt?"""
+    """Does a pair of points go on from a spot of the last frame that had some, which was as near as
+    `reach`, or from a place that was felt?"""
     middle, n = middle_of_pair(minima, o + POINTS), normal_of(minima, o)
-    for k in range(int(kept[F_SPOTS])):
+    for k in range(int(kept[F_EARLIER])):
         at = F_BEFORE + SPOT_REALS * k
         near = norm(sub(read_vector(kept, at), middle)) <= reach
         alike = dot(read_vector(kept, at + S_NORMAL), n) >= ALIKE
@@ -184,25 +186,6 @@ def goes_missing(kept, asked, best, minima):
 
 
 @kernel
-def ended_deep(minima, sets, n, felt, kept, asked, size):
-    """How many places that were felt have ended without coming to 0, and without one that is felt,
-    as deep as they were, in their stead."""
-    step, count = jump_of(asked, size), 0
-    for p in range(int(kept[F_PLACES])):
-        o = place_at(p)
-        if kept[o + P_FELT] == 0.0 or kept[o + P_DISTANCE] >= -step:
-            continue
-        ended = True
-        for k in range(n):
-            row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
-            alike = dot(read_vector(kept, o + P_NORMAL), normal_of(minima, row)) >= ALIKE
-            if felt[k] > 0.0 and alike and sets[SET_REALS * k] <= kept[o + P_DISTANCE] + step:
-                ended = False
-        count += 1 if ended else 0
-    return count
-
-
-@kernel
 def put_place(minima, sets, k, felt, kept):
     s, o = SET_REALS * k, place_at(k)
     row = MINIMUM_REALS * int(sets[s + SET_ROW])
@@ -219,8 +202,8 @@ def spot_at(k):
 
 
 @kernel
-def keep_spot(best, minima, o, kept):
-    """Keep a common normal as a spot, once."""
+def keep_spot(best, minima, o, place, kept):
+    """Keep a common normal as a spot, once; `place` is 1 for a place."""
     x, n, count = middle_of_pair(minima, o + POINTS), normal_of(minima, o), int(kept[F_SPOTS])
     for k in range(count):
         at = spot_at(k)
@@ -234,7 +217,7 @@ def keep_spot(best, minima, o, kept):
     at = spot_at(count)
     put_three(kept, at, x)
     put_three(kept, at + S_NORMAL, n)
-    kept[at + S_DEPTH] = -minima[o]
+    kept[at + S_DEPTH], kept[at + S_PLACE] = -minima[o], place
     kept[F_SPOTS] += 1.0
 
 
@@ -281,10 +264,50 @@ def put_spots(best, minima, sets, kept):
     for k in range(int(kept[F_PLACES])):
         if kept[place_at(k) + P_FELT] > 0.0 and kept[place_at(k) + P_DISTANCE] < 0.0:
             row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
-            keep_spot(best, minima, row, kept)
+            keep_spot(best, minima, row, 1.0, kept)
     for i in range(int(best[N_MINIMA])):
         if minima[MINIMUM_REALS * i + BOUND] < NO_MINIMUM:
-            keep_spot(best, minima, MINIMUM_REALS * i, kept)
+            keep_spot(best, minima, MINIMUM_REALS * i, 0.0, kept)
+
+
+@kernel
+def in_its_stead(kept, at, step):
+    """Is a place felt that is as deep as a spot of the frame before, along much the same normal?"""
+    n, depth = read_vector(kept, at + S_NORMAL), kept[at + S_DEPTH]
+    for k in range(int(kept[F_PLACES])):
+        o = place_at(k)
+        alike = dot(n, read_vector(kept, o + P_NORMAL)) >= ALIKE
+        if alike and kept[o + P_FELT] > 0.0 and kept[o + P_DISTANCE] <= step - depth:
+            return True
+    return False
+
+
+@kernel
+def hand_on(kept, at, reach, step):
+    """Let a spot that is where one of the frame before was, and pushes as that did, stand for its
+    place: places that merge push on, each at its own side. Is there one?"""
+    x, n = read_vector(kept, at), read_vector(kept, at + S_NORMAL)
+    for k in range(int(kept[F_SPOTS])):
+        o = spot_at(k)
+        alike = dot(n, read_vector(kept, o + S_NORMAL)) >= ALIKE
+        near = norm(sub(read_vector(kept, o), x)) <= reach
+        if alike and near and kept[o + S_DEPTH] >= kept[at + S_DEPTH] - step:
+            kept[o + S_PLACE] = 1.0
+            return True
+    return False
+
+
+@kernel
+def ended_deep(kept, count, asked, size):
+    """How many places that were felt have ended without coming to 0, and without one that is felt,
+    as deep as they were, in their stead, or a spot where they were; `count` spots were before."""
+    step, reach, ended = jump_of(asked, size), branch_reach(size, asked.step), 0
+    for k in range(count):
+        at = F_BEFORE + SPOT_REALS * k
+        deep = kept[at + S_PLACE] > 0.0 and kept[at + S_DEPTH] > step
+        if deep and not in_its_stead(kept, at, step) and not hand_on(kept, at, reach, step):
+            ended += 1
+    return ended
 
 
 @kernel
@@ -331,6 +354,21 @@ def share_springs(kept, span):
 
 
 @kernel
+def recall_spots(kept, count):
+    """Keep the spots of the frame before as earlier ones. Where it had none, those before it stay
+    for as many frames as may pass before Newton's method is tried again: what was missed in one
+    must not be new in the next."""
+    if count > 0:
+        for k in range(SPOT_REALS * count):
+            kept[F_BEFORE + k] = kept[F_SPOT + k]
+        kept[F_EARLIER], kept[F_NONE_FOR] = count, 0.0
+        return
+    kept[F_NONE_FOR] += 1.0
+    if kept[F_NONE_FOR] >= MOST_RETRIED_IN:
+        kept[F_EARLIER] = 0.0
+
+
+@kernel
 def tell_places(both, front, asked, best, minima, sets, kept):
     """The places of a frame and their spots into what is kept, of the common normals that were
     found; how many places."""
@@ -343,19 +381,19 @@ def tell_places(both, front, asked, best, minima, sets, kept):
     front.store[N_MERGED] = 0.0
     number_sets(front, minima, sets, n, branch_reach(best[SIZE], asked.step), 0)
     renew_branches(front, minima, sets, n)
-    for k in range(SPOT_REALS * int(kept[F_SPOTS])):
-        kept[F_BEFORE + k] = kept[F_SPOT + k]
+    count = int(kept[F_SPOTS])
+    recall_spots(kept, count)
     felt = ahead(sets, SET_REALS * n)  # behind them there is room
     for k in range(n):
         row = MINIMUM_REALS * int(sets[SET_REALS * k + SET_ROW])
         known = is_felt(kept, minima, row, sets[SET_REALS * k], asked, best[SIZE])
         felt[k] = 1.0 if known else 0.0
     mark_felt(both, kept, minima, asked, best)
-    kept[F_ENDED] = ended_deep(minima, sets, n, felt, kept, asked, best[SIZE])
     for k in range(n):
         put_place(minima, sets, k, felt[k], kept)
     kept[F_PLACES], kept[F_MADE] = n, 1.0
     put_spots(best, minima, sets, kept)
+    kept[F_ENDED] = ended_deep(kept, count, asked, best[SIZE])
     share_springs(kept, asked.span)
     kept[F_LOST] = best[LOST]
     return n
