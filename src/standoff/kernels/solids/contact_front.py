@@ -14,22 +14,18 @@ from math import inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import dot, norm, scale, sub
+from standoff.kernels.algebra.vectors import norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_ends import keep_end
-from standoff.kernels.solids.contact_minimum import (
-    first_normal,
-    middles_of,
-    moved_side,
-    nearest_apart,
-    start_of,
-)
+from standoff.kernels.solids.contact_minimum import middles_of
+from standoff.kernels.solids.contact_rest import apart_for, held_for
 from standoff.kernels.solids.contact_search import (
     follow_signed,
     is_vertex,
     keep_signed,
     normal_in_leaves,
+    normal_of_leaves,
     rests_for,
 )
 from standoff.kernels.solids.front_branches import (
@@ -37,10 +33,8 @@ from standoff.kernels.solids.front_branches import (
     B_POINTS,
     B_TAKEN,
     BRANCH_REALS,
-    steepest_side,
 )
 from standoff.kernels.solids.front_frame import GROWN, GROWN_BY
-from standoff.kernels.solids.front_minima import RESTS
 from standoff.kernels.solids.front_rows import FRAME, GONE, MAKING, N_BRANCHES, N_MADE, N_ROWS
 from standoff.kernels.solids.spatial_boxes import gap_of, node_reach, normals_shut_for
 from standoff.kernels.solids.spatial_minimum import jets_at
@@ -53,12 +47,10 @@ from standoff.kernels.solids.spatial_progress import (
     N_MINIMA,
     NODE_PAIRS,
     ROUNDING,
-    SIZE,
     evaluations,
     middle,
 )
 from standoff.kernels.solids.spatial_search import node_ints
-from standoff.kernels.solids.spatial_tolerances import HELD_SLOPE
 
 # What a row holds: leaves (-1 - node where it is a node), up to which motion it rests, what
 # Newton's method came to, and where; where it came to none, from where it began.
@@ -72,8 +64,6 @@ UNSEEN, CAME, CAME_TO_NONE, HELD, APART = 0.0, 1.0, 2.0, 3.0, 4.0
 PAST_LEAF = 2.0
 # Of the distance of two vertices: how far B may move, in ticks, before they are looked at again.
 RESTS_ABOVE = 0.5
-# Of the distance of leaves that are curved round each other, the same.
-RESTS_APART = 0.5
 # Of so many frames in one it is tried again in a pair of leaves in which it came to none, at least.
 MOST_RETRIED_IN = 4
 
@@ -237,11 +227,8 @@ def begin_again(pa, pb, front, k, turn, best, counts):
     o, r = CONTACT_REALS * k, front.rows
     tried, woken = r[o + C_TOLD] in (CAME_TO_NONE, HELD, APART), r[o + C_REST] == -inf
     first = place_of(r, o) if tried else middles_of(pa, pb)
-    start, away, nearest = start_of(pa, pb, first, counts)
-    found, q, n, d = normal_in_leaves(pa, pb, start, best, counts)
-    if woken and not found and not nearest:  # one may have come in at a side
-        beside = nearest_apart(pa, pb, away, first, counts)
-        found, q, n, d = normal_in_leaves(pa, pb, beside, best, counts)
+    found, q, n, d, begun = normal_of_leaves(pa, pb, first, woken, best, counts)
+    start, away, nearest = begun
     r[o + C_TOLD], r[o + C_REST] = CAME if found else CAME_TO_NONE, front.store[GONE]
     put_four(r, o + C_AT, q if found else start)
     if not found:
@@ -249,35 +236,6 @@ def begin_again(pa, pb, front, k, turn, best, counts):
         if free > 0.0:
             r[o + C_TOLD], r[o + C_REST] = HELD if nearest else APART, front.store[GONE] + free
     return found, q, n, d
-
-
-@kernel
-def apart_for(a, b, q, best):
-    """Of the motion of B that could bring two leaves, as parts, together, some, length: of their
-    distance along a normal at parameters `q`, less what their slopes make of it within the leaves;
-    0 or less where they may be near. What there is apart of them may be found later."""
-    ja, jb = jets_at(a.side, a.leaf, b.side, b.leaf, q)
-    n = first_normal(a.side, a.leaf, ja, b.side, b.leaf, jb, q, best[SIZE])
-    d = dot(n, sub(jb[0], ja[0]))
-    u, v = 0.5 * (a.box.u1 - a.box.u0), 0.5 * (a.box.v1 - a.box.v0)
-    s, t = 0.5 * (b.box.u1 - b.box.u0), 0.5 * (b.box.v1 - b.box.v0)
-    of_a = abs(dot(n, ja[1])) * u + abs(dot(n, ja[2])) * v
-    of_b = abs(dot(n, jb[1])) * s + abs(dot(n, jb[2])) * t
-    return RESTS_APART * (d - of_a - of_b)
-
-
-@kernel
-def held_for(a, b, q, away, turn):
-    """Of the motion of B that could level the slope at a side of two leaves, as parts, at which
-    they are nearest moved apart by a vector, some, length; 0 where they are held at none. `turn`:
-    as of `rests_for`."""
-    moved = S.Part(moved_side(b.side, away), b.leaf, b.box)
-    sine, _, _ = steepest_side(a, moved, q, False)
-    ja, jb = jets_at(a.side, a.leaf, moved.side, b.leaf, q)
-    distance = norm(sub(jb[0], ja[0]))
-    if sine <= HELD_SLOPE or distance == 0.0:
-        return 0.0
-    return RESTS * sine / (1.0 / distance + turn)
 
 
 @kernel

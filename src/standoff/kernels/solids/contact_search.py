@@ -178,19 +178,31 @@ def normal_in_leaves(a, b, q, best, counts):
 
 
 @kernel
+def normal_of_leaves(a, b, first, thorough, best, counts):
+    """(whether Newton's method comes to a common normal of two leaves, as parts, parameters, n, d;
+    the start of the first attempt, as `start_of` tells it, from `first` on). Where one is curved
+    round the other it begins at their middles as well, and, if it is to be `thorough`, where they
+    are nearest moved apart: a common normal may have come in at a side."""
+    begun = start_of(a, b, first, counts)
+    start, away, nearest = begun
+    found, q, n, d = normal_in_leaves(a, b, start, best, counts)
+    if not found and not nearest:
+        if norm(away) > 0.0:
+            found, q, n, d = normal_in_leaves(a, b, middles_of(a, b), best, counts)
+        if not found and thorough:
+            beside = nearest_apart(a, b, away, first, counts)
+            found, q, n, d = normal_in_leaves(a, b, beside, best, counts)
+    return found, q, n, d, begun
+
+
+@kernel
 def look_in_leaves(a, leaf_a, b, leaf_b, fans, best, minima, counts):
-    """Newton's method in a pair of leaves, from where they are nearest moved apart, or their
-    middles."""
+    """Newton's method in a pair of leaves."""
     counts[LEAF_PAIRS] += 1
     pa, pb = S.Part(a, leaf_a, leaf_box(a, leaf_a)), S.Part(b, leaf_b, leaf_box(b, leaf_b))
     if rests_for(pa, pb, 0.0, best) > 0.0:
         return
-    middles = middles_of(pa, pb)
-    q, away, nearest = start_of(pa, pb, middles, counts)
-    found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
-    if not found and not nearest:
-        q = nearest_apart(pa, pb, away, middles, counts)
-        found, q, n, d = normal_in_leaves(pa, pb, q, best, counts)
+    found, q, n, d, _ = normal_of_leaves(pa, pb, middles_of(pa, pb), True, best, counts)
     if found:
         keep_signed(a, b, fans, (leaf_a, leaf_b), (q, n, d), best[ABOVE], best, minima)
 
