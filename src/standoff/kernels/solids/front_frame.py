@@ -7,13 +7,16 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.front_apart import hold_all
 from standoff.kernels.solids.front_branches import follow_branches
 from standoff.kernels.solids.front_close import tied
+from standoff.kernels.solids.front_held import counted_apart, hold_rows, is_known_apart
 from standoff.kernels.solids.front_look import asked_of, descend, settle_row, tell_open
 from standoff.kernels.solids.front_minima import find_minima
 from standoff.kernels.solids.front_rows import (
     COST,
     HURRIED,
+    KNOWN,
     LATE,
     MAKING,
     N_AWAKE,
@@ -200,8 +203,28 @@ def settle_rows(a, b, front, travel, best, minima, counts):
 
 
 @kernel
+def settle_all(a, b, front, travel, best, minima, counts):
+    """Look at all rows that are due if the solids are apart; whether they are known to be. If not,
+    and there is time, at those in which they may have a common point."""
+    known = is_known_apart(front, travel)
+    if not known:
+        hold_rows(front, travel.gone - travel.step, travel)
+    trusting = counted_apart(travel)
+    settle_rows(a, b, front, trusting, best, minima, counts)
+    if known or hold_all(a, b, front, trusting, best, minima, counts):
+        front.store[KNOWN] = max(front.store[KNOWN], travel.gone)
+        return True
+    if best[MET] == 0.0 and front.store[LATE] == 0.0:
+        settle_rows(a, b, front, travel, best, minima, counts)
+    else:
+        best[OPEN] = min(best[OPEN], 0.0)
+    return False
+
+
+@kernel
 def frame(a, b, front, travel, best, minima, counts):
-    """Fill `best` and `minima` as a search does; whether the front was made anew."""
+    """Fill `best` and `minima` as a search does; whether the front was made anew, and whether the
+    solids are known to have stayed apart."""
     store = front.store
     anew = store[N_ROWS] == 0.0 or has_grown(front, best)
     if anew:
@@ -209,9 +232,11 @@ def frame(a, b, front, travel, best, minima, counts):
     above = best[ABOVE]
     if above > 0.0:
         follow_branches(a, b, front, best, minima, counts)
-        find_minima(a, b, front, travel, best, minima, counts)
+        find_minima(a, b, front, counted_apart(travel), best, minima, counts)
         best[ABOVE] = 0.0  # what is to be proven does not depend on it
-    settle_rows(a, b, front, travel, best, minima, counts)
+    sure = settle_all(a, b, front, travel, best, minima, counts)
+    if sure:
+        travel = counted_apart(travel)
     if store[MAKING] > 0.0:
         store[COST] += evaluations(counts)
         if best[N_OPEN] == 0.0:
@@ -227,7 +252,7 @@ def frame(a, b, front, travel, best, minima, counts):
     if above > 0.0:
         best[ABOVE] = above
         bound_found(front, travel, best, minima)
-    return anew
+    return anew, sure
 
 
 @kernel
