@@ -210,6 +210,10 @@ def settle_all(a, b, front, travel, best, minima, counts):
     if not known:
         hold_rows(front, travel.gone - travel.step, travel)
     trusting = counted_apart(travel)
+    if not known and front.store[LATE] > 0.0:
+        # where there may be no time for both, the solids are to be known apart first
+        settle_oldest(a, b, front, LONG_OPEN[0], trusting, best, minima, counts)
+        known = hold_all(a, b, front, trusting, best, minima, counts)
     settle_rows(a, b, front, trusting, best, minima, counts)
     if known or hold_all(a, b, front, trusting, best, minima, counts):
         front.store[KNOWN] = max(front.store[KNOWN], travel.gone)
