@@ -1,5 +1,5 @@
-"""Rows that are not held after a frame's looks: what else shows that the solids do not come together
-in them."""
+"""Rows that are not held after a frame's looks: what else shows that the solids do not come
+together in them."""
 
 from standoff.kernels.algebra.vectors import add, norm, rotate, sub
 from standoff.kernels.compiler.decorators import kernel
@@ -70,8 +70,10 @@ def hold_off_planes(pa, pb, front, k, travel, best, counts):
 
 
 @kernel
-def hold_leaves(a, b, front, k, looked, travel, best, minima, counts):
-    """Look at a pair of leaves' parts, or cut it if it was: may more be known after it?"""
+def hold_leaves(a, b, front, row, travel, best, minima, counts):
+    """Look at a pair of leaves' parts, or cut it; may more be known after it? row: which, and
+    whether it was looked at."""
+    k, looked = row
     pa, pb = parts_of_row(a, b, front, k)
     moved, radius = hold_off_planes(pa, pb, front, k, travel, best, counts)
     if is_held(front, k, travel.gone, travel):
@@ -99,7 +101,7 @@ def hold_row(a, b, front, k, travel, best, minima, counts):
             if looked and not cut_nodes(a, b, front, k):
                 break
             looked = not looked and look_at_nodes(a, b, front, k, travel, best, counts) != CUT
-        elif hold_leaves(a, b, front, k, looked, travel, best, minima, counts):
+        elif hold_leaves(a, b, front, (k, looked), travel, best, minima, counts):
             looked = not looked
         else:
             break

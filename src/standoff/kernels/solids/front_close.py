@@ -204,14 +204,16 @@ def close_row(front, k, pair, ball, travel, best, minima, counts):
     goal, ahead, boxes = lasting_goal(best), LEAVES_AHEAD * travel.ahead, counts[BOXES]
     begun = evaluations(counts)
     aim = aimed(goal, distance, ahead)
-    if front.store[LATE] == HURRIED:
+    low, way, phi = close_again(front, k, pair, aim, best, counts)
+    if low < goal and front.store[LATE] == HURRIED:
+        if is_stopped(best, counts):
+            return KEPT
         # first of all such rows so much that the solids are known not to come together there
         some = min(SOME * distance, goal)
         way, phi = closed_to(some, -1, pair, FEW_BOXES, best, minima, counts)
         if way >= 0:
             keep_proven(front, k, some, way, phi, ball, travel, best)
             return KEPT
-    low, way, phi = close_again(front, k, pair, aim, best, counts)
     if low < goal:
         way = -1
         if aim > tied(best):

@@ -68,6 +68,8 @@ from standoff.kernels.solids.stationary import is_bowl
 
 # A front that has this many times its first rows, and some, is made anew.
 GROWN, GROWN_BY = 2.0, 256.0
+# Of what making a front takes: how much more where its rows are to be held at once.
+UNHELD = 8.0
 # Sizes of a motion after which it counts from 0 again, so that its rounding stays below that of a
 # query; and times these and `MOTION_SPARE` the size, for the rounding of what was kept beside it.
 FARTHEST_GONE = 16.0
@@ -157,11 +159,13 @@ def make_front(front):
 
 
 @kernel
-def has_grown(front, best):
+def has_grown(front, travel, best):
     """Is a front to be made anew, and is there time for it?"""
     store = front.store
     grown = store[MAKING] == 0.0 and store[N_ROWS] > GROWN * store[N_MADE] + GROWN_BY
-    return grown and best[BUDGET] > GROWN * store[COST]
+    # new rows are not held: where the solids are not known to stay apart, they take more
+    more = GROWN if is_known_apart(front, travel) else UNHELD * GROWN
+    return grown and best[BUDGET] > more * store[COST]
 
 
 @kernel
@@ -170,7 +174,7 @@ def settle_oldest(a, b, front, age, travel, best, minima, counts):
     these first at so much that they are known not to (`age` 0); or those whose bounds have sunk by
     `age` frames' motion since they were asked for."""
     store = front.store
-    low = min(tied(best), travel.ahead)
+    low = min(tied(best), travel.step)
     if age > 0.0:
         low = tied(best) - age * travel.ahead / FRAMES_AHEAD
     store[LATE], i = HURRIED if age == 0.0 else 1.0, 0
@@ -230,7 +234,7 @@ def frame(a, b, front, travel, best, minima, counts):
     """Fill `best` and `minima` as a search does; whether the front was made anew, and whether the
     solids are known to have stayed apart."""
     store = front.store
-    anew = store[N_ROWS] == 0.0 or has_grown(front, best)
+    anew = store[N_ROWS] == 0.0 or has_grown(front, travel, best)
     if anew:
         make_front(front)
     above = best[ABOVE]

@@ -27,7 +27,6 @@ from standoff.kernels.solids.front_rows import (
 from standoff.kernels.solids.spatial_pieces import ZERO
 from standoff.kernels.solids.torus_potential import SCREW_OF, potential_jet
 
-
 # Shifts for which a potential's slope is told: the greatest of so many, each this part of the one
 # before, up to which it does not bend too much.
 MOST_ROOMS, LESS_ROOM = 3, 0.25
