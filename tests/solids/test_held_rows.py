@@ -54,17 +54,22 @@ def test_what_is_known_to_stay_apart_does_not_meet_on_the_way() -> None:
     """Leaps past, along, through and into a bracket and a ring, longer than the distance."""
     known, crossed, rng = 0, 0, np.random.default_rng(3)
     for a, middle in ((bracket(), np.array([0.2, 0.6, 0.35])), (ring(1.0, 0.25), np.zeros(3))):
-        tracker = SolidTracker(a, MOVED)
-        for k in range(60):
+        trackers = SolidTracker(a, MOVED), SolidTracker(a, MOVED, minima=0.5)
+        for k in range(36):
+            tracker = trackers[k // 2 % 2]
             turn = Rotation.random(random_state=rng).as_matrix()
             shift = middle + rng.uniform(-0.9, 0.9, 3)
-            # a little way, or to the other side
-            by = Rotation.from_rotvec((0.05 if k % 2 else 0.2) * rng.normal(size=3)).as_matrix()
-            leap = 0.05 * rng.normal(size=3) if k % 2 else 2.0 * (middle - shift)
-            first, last = placed(turn, shift), placed(by @ turn, shift + leap)
+            first = placed(turn, shift)
             front = tracker.start(STILL, first).front
             if front is None:
                 continue
+            # a little farther than to the other solid, or to the other side
+            leap, by = 2.0 * (middle - shift), Rotation.from_rotvec(0.2 * rng.normal(size=3))
+            if k % 2:
+                leap = rng.normal(size=3)
+                leap *= 1.1 * front.before[13] / np.linalg.norm(leap)
+                by = Rotation.from_rotvec(0.02 * rng.normal(size=3))
+            last = placed(by.as_matrix() @ turn, shift + leap)
             row = row_of_frame(tracker, front, last)
             if row[T.MOTION] < front.before[13]:
                 continue

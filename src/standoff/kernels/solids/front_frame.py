@@ -211,8 +211,6 @@ def settle_all(a, b, front, travel, best, minima, counts):
     """Look at all rows that are due if the solids are apart; whether they are known to be. If not,
     and there is time, at those in which they may have a common point."""
     known = is_known_apart(front, travel)
-    if not known:
-        hold_rows(front, travel.gone - travel.step, travel)
     trusting = counted_apart(travel)
     if not known and front.store[LATE] > 0.0:
         # where there may be no time for both, the solids are to be known apart first
@@ -237,6 +235,9 @@ def frame(a, b, front, travel, best, minima, counts):
     anew = store[N_ROWS] == 0.0 or has_grown(front, travel, best)
     if anew:
         make_front(front)
+    # by what was proven before, so before anything is proven of this frame
+    if not is_known_apart(front, travel):
+        hold_rows(front, travel.gone - travel.step, travel)
     above = best[ABOVE]
     if above > 0.0:
         follow_branches(a, b, front, best, minima, counts)

@@ -75,7 +75,7 @@ def hold_on_the_way(front, k, travel):
     last, other = moved_since(front, k, travel.pose, travel.quaternion)
     # a point of B is off the straight way between where it was and is by no more
     arc = travel.step * travel.step / (8.0 * travel.radius)
-    spare = 2.0 * arc + travel.spare
+    spare = 2.0 * arc * (1.0 + r[o + ROW_RADIUS] / travel.radius) + travel.spare
     if low > 0.0:
         radius = 2.0 * r[o + ROW_RADIUS]
         swing, turned = radius * sine + spare, radius * other + spare
@@ -99,6 +99,7 @@ def hold_shut(front, k, first, last, between, travel):
     the shift, and the sine of half the turn, before this frame, after it, and in it."""
     o, r = ROW_REALS * k, front.rows
     free, gone, further, step = r[o + ROW_FREE], 0.0, 0.0, 0.0
+    arc = travel.step * travel.step / (8.0 * travel.radius)
     if r[o + ROW_GOAL] == inf:
         turn = 2.0 * travel.radius
         gone = max(first[0], turn * asin(first[1]))
@@ -108,7 +109,8 @@ def hold_shut(front, k, first, last, between, travel):
         turn = 2.0 * max(r[o + ROW_RADIUS], r[o + ROW_FAR])
         gone, further = first[0] + turn * first[1], last[0] + turn * last[1]
         step = between[0] + turn * between[1]
-    spare = travel.spare + travel.step * travel.step / (4.0 * travel.radius)
+        arc *= 1.0 + turn / travel.radius
+    spare = travel.spare + 2.0 * arc
     before, after = free - gone - spare, free - further - spare
     if before > 0.0 and after > 0.0:
         hold_on(front, k, 0.0, 1.0, travel)
