@@ -193,19 +193,22 @@ def is_within(solid: Solid, row: Array, side: int, found: so.solids.NearestPair)
 def travel_at(turn: Array, shift: Array) -> F.Travel:
     pose = Pose(tuple(turn.ravel().tolist()), tuple(shift.tolist()))
     quaternion = unit_quaternion(pose.R)
-    return F.Travel(50.0, 0.0, RADIUS, 1.0 / RADIUS, AFAR, True, pose, quaternion, 0.0, 0.0, 0.0)
+    return F.Travel(
+        50.0, 0.0, RADIUS, 1.0 / RADIUS, AFAR, True, pose, quaternion, 0.0, 0.0, 0.0,
+        0.0, pose, quaternion,
+    )  # fmt: skip
 
 
 @njit
-def carry(front, middle, first, then, spread, room, goal):
+def carry(front, middle, first, then, bend, room, goal):
     mark_place(front, 0, middle, 0.1, 0.4, first)
-    mark_bound(front, 0, 1.0, (0.0, 0.0, 1.0), spread, room)
+    mark_bound(front, 0, 1.0, (0.0, 0.0, 1.0), bend, room)
     mark_shut(front, 0, 0.5, goal)
     carry_row(front, 0, 0.0, then)
 
 
 def carried(
-    turn: Array, shift: Array, spread: float, room: float, goal: float = np.inf
+    turn: Array, shift: Array, bend: float, room: float, goal: float = np.inf
 ) -> tuple[float, float]:
     """(bound, length that is still shut) of a row that had 1 and 0.5, with the slope along z, when
     B was as it is; after a turn of B about the middle of its piece, and a shift. It was shut for
@@ -217,7 +220,7 @@ def carried(
     front.keys[:] = -np.inf
     middle = first @ [0.3, -0.2, 0.5] + at
     then = travel_at(turn @ first, middle + turn @ (at - middle) + shift)
-    carry(front, tuple(middle.tolist()), travel_at(first, at), then, spread, room, goal)
+    carry(front, tuple(middle.tolist()), travel_at(first, at), then, bend, room, goal)
     return front.keys[0] - 50.0, front.keys[1] - 50.0
 
 
@@ -229,11 +232,13 @@ def test_a_row_s_bound_is_lessened_along_its_slope_alone() -> None:
     assert carried(none, across, 0.0, np.inf) == (close(1.0), close(0.0, abs=1e-12))
     assert carried(none, up, 0.0, np.inf) == (close(1.02), close(0.48))
     assert carried(none, -up, 0.0, np.inf) == (close(0.98), close(0.48))
-    # a slope that differs by a tenth
-    assert carried(none, across, 0.1, np.inf)[0] == close(1.0 - 0.05)
-    assert carried(none, across - up, 0.1, np.inf)[0] == close(0.98 - 0.1 * np.hypot(0.5, 0.02))
+    # a slope that bends: over the piece's radius of 0.1, and half of the way
+    assert carried(none, across, 0.2, np.inf)[0] == close(1.0 - 0.2 * (0.1 + 0.25) * 0.5)
+    way = np.hypot(0.5, 0.02)
+    bent = 0.2 * (0.1 + 0.5 * way) * way
+    assert carried(none, across - up, 0.2, np.inf)[0] == close(0.98 - bent)
     # but never by more than was gone
-    assert carried(none, -up, 0.1, np.inf)[0] == close(0.98)
+    assert carried(none, -up, 0.2, np.inf)[0] == close(0.98)
     # beyond where the slope is known, what was gone counts
     assert carried(none, across, 0.0, 0.4)[0] == close(0.5)
     assert carried(none, up, 0.0, 0.01)[0] == close(0.98)
@@ -261,8 +266,8 @@ def test_a_turn_of_a_row_s_piece_counts_by_its_radius(angle: float) -> None:
 
 @njit
 def slope_and_values(phi, centre, radius, room, y, z):
-    slope, spread = slope_of(phi, 1.0, centre, radius, room)
-    return slope, spread, potential_jet(phi, y, 0.0)[0], potential_jet(phi, z, 0.0)[0]
+    slope, bend, room = slope_of(phi, 1.0, centre, radius, room)
+    return slope, bend, room, potential_jet(phi, y, 0.0)[0], potential_jet(phi, z, 0.0)[0]
 
 
 @pytest.mark.parametrize("kind", [TORUS_THROUGH, CONE_OF, CIRCLE_OF, AXIS_OF, CENTRE_OF])
@@ -281,11 +286,15 @@ def test_a_potential_s_slope_differs_by_no_more_than_is_told(kind: int) -> None:
         y = centre + radius * rng.uniform() * way / np.linalg.norm(way)
         by *= room * rng.uniform() / np.linalg.norm(by)
         at = [tuple(map(float, x)) for x in (centre, y, y + by)]
-        slope, spread, before, after = slope_and_values(phi, at[0], radius, room, at[1], at[2])
+        told_of = slope_and_values(phi, at[0], radius, room, at[1], at[2])
+        slope, bend, told_room, before, after = told_of
         long = np.linalg.norm(by)
-        assert after - before >= slope @ by - spread * long - 1e-15
-        assert after - before <= slope @ by + spread * long + 1e-15
-        told += spread < 0.5
+        if long > told_room:
+            continue
+        off = bend * (radius + 0.5 * long) * long
+        assert after - before >= slope @ by - off - 1e-15
+        assert after - before <= slope @ by + off + 1e-15
+        told += 1
     assert told > 30
 
 

@@ -116,6 +116,7 @@ def go_apart(g, deadline):
         return False
     inside = inside_told(s)
     if told[T.SURE] == 0.0 and which_is_inside(g.a, g.b, g.pose, g.probe) != inside:
+        s[B.LAST_LOW] = 0.0  # what is proven of the boundaries does not hold the solids apart
         return False
     n = 0
     if best[ABOVE] > 0.0:

@@ -36,7 +36,9 @@ from standoff.kernels.solids.front_frame import (
 from standoff.kernels.solids.front_rows import (
     FRAME,
     GONE,
+    KNOWN,
     N_MERGED,
+    N_ROWS,
     ROW_REALS,
     Front,
     Travel,
@@ -158,16 +160,22 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     best, minima = search
     store = front.store
     step, radius = motion_between(last, now, best[SIZE])
+    if store[N_ROWS] == 0.0:
+        store[KNOWN] = -inf
+    if low > 0.0:
+        store[KNOWN] = max(store[KNOWN], store[GONE] + low)
     store[GONE] += step
-    sure = step < low
     if store[GONE] > FARTHEST_GONE * best[SIZE]:
         begin_motion(front, FARTHEST_GONE * MOTION_SPARE * best[SIZE])
     store[FRAME] += 1.0
     ahead = min(FRAMES_AHEAD * step, FARTHEST_AHEAD * best[SIZE])
     afar = far_side(a, now, radius)
-    turn, spare = unit_quaternion(now.pose.R), rounding_of(now, best[SIZE])
-    gone, turning, above, wider = store[GONE], 1.0 / radius, asked[2], asked[3]
-    travel = Travel(gone, ahead, radius, turning, afar, sure, now.pose, turn, spare, above, wider)
+    spare = rounding_of(now, best[SIZE]) + rounding_of(last, best[SIZE])
+    gone, turning, turn = store[GONE], 1.0 / radius, unit_quaternion(now.pose.R)
+    travel = Travel(
+        gone, ahead, radius, turning, afar, False, now.pose, turn, spare, asked[2], asked[3],
+        step, last.pose, unit_quaternion(last.pose.R),
+    )  # fmt: skip
     ask(best, asked, norm(now.pose.p))
     for k in range(N_COUNTS):
         counts[k] = 0
@@ -177,7 +185,7 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     rest = rest_for(step, best[SIZE])
     list_awake(front, farthest(best) + best[ROUNDING], rest, travel)
     follow(a, now, front, travel, best, minima, counts)
-    anew = frame(a, now, front, travel, best, minima, counts)
+    anew, sure = frame(a, now, front, travel, best, minima, counts)
     tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)
     out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], counts), step
     out[ANEW], out[SURE], out[N_SETS] = 1.0 if anew else 0.0, 1.0 if sure else 0.0, 0.0

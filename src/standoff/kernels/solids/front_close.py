@@ -108,8 +108,8 @@ def keep_proven(front, k, low, way, phi, ball, travel, best):
     mark_place(front, k, ball[0], ball[1], 0.0, travel)
     room = LEAVES_AHEAD * travel.ahead
     sign = -1.0 if way == OWN_B else 1.0
-    slope, spread = slope_of(phi, sign, ball[0], ball[1], room)
-    mark_bound(front, k, low, slope, spread, room)
+    slope, bend, room = slope_of(phi, sign, ball[0], ball[1], room)
+    mark_bound(front, k, low, slope, bend, room)
 
 
 @kernel
@@ -204,14 +204,16 @@ def close_row(front, k, pair, ball, travel, best, minima, counts):
     goal, ahead, boxes = lasting_goal(best), LEAVES_AHEAD * travel.ahead, counts[BOXES]
     begun = evaluations(counts)
     aim = aimed(goal, distance, ahead)
-    if front.store[LATE] == HURRIED:
+    low, way, phi = close_again(front, k, pair, aim, best, counts)
+    if low < goal and front.store[LATE] == HURRIED:
+        if is_stopped(best, counts):
+            return KEPT
         # first of all such rows so much that the solids are known not to come together there
         some = min(SOME * distance, goal)
         way, phi = closed_to(some, -1, pair, FEW_BOXES, best, minima, counts)
         if way >= 0:
             keep_proven(front, k, some, way, phi, ball, travel, best)
             return KEPT
-    low, way, phi = close_again(front, k, pair, aim, best, counts)
     if low < goal:
         way = -1
         if aim > tied(best):
@@ -252,4 +254,13 @@ def cut_row(front, k, pair, best):
     else:
         first, second = split(pb.box, bu >= bv)
         parts = (pa.box, first), (pa.box, second)
+    return put_parts(front, k, (pa.leaf, pb.leaf), parts, q)
+
+
+@kernel
+def cut_of_b(front, k, pa, pb, q):
+    """Cut B's part of a row in two; False: there is no room."""
+    bu, bv = widths(pb.side, pb.leaf, pb.box)
+    first, second = split(pb.box, bu >= bv)
+    parts = (pa.box, first), (pa.box, second)
     return put_parts(front, k, (pa.leaf, pb.leaf), parts, q)

@@ -7,13 +7,16 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import norm, sub
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.front_apart import hold_all
 from standoff.kernels.solids.front_branches import follow_branches
 from standoff.kernels.solids.front_close import tied
+from standoff.kernels.solids.front_held import counted_apart, hold_rows, is_known_apart
 from standoff.kernels.solids.front_look import asked_of, descend, settle_row, tell_open
 from standoff.kernels.solids.front_minima import find_minima
 from standoff.kernels.solids.front_rows import (
     COST,
     HURRIED,
+    KNOWN,
     LATE,
     MAKING,
     N_AWAKE,
@@ -65,6 +68,8 @@ from standoff.kernels.solids.stationary import is_bowl
 
 # A front that has this many times its first rows, and some, is made anew.
 GROWN, GROWN_BY = 2.0, 256.0
+# Of what making a front takes: how much more where its rows are to be held at once.
+UNHELD = 8.0
 # Sizes of a motion after which it counts from 0 again, so that its rounding stays below that of a
 # query; and times these and `MOTION_SPARE` the size, for the rounding of what was kept beside it.
 FARTHEST_GONE = 16.0
@@ -154,11 +159,13 @@ def make_front(front):
 
 
 @kernel
-def has_grown(front, best):
+def has_grown(front, travel, best):
     """Is a front to be made anew, and is there time for it?"""
     store = front.store
     grown = store[MAKING] == 0.0 and store[N_ROWS] > GROWN * store[N_MADE] + GROWN_BY
-    return grown and best[BUDGET] > GROWN * store[COST]
+    # new rows are not held: where the solids are not known to stay apart, they take more
+    more = GROWN if is_known_apart(front, travel) else UNHELD * GROWN
+    return grown and best[BUDGET] > more * store[COST]
 
 
 @kernel
@@ -167,7 +174,7 @@ def settle_oldest(a, b, front, age, travel, best, minima, counts):
     these first at so much that they are known not to (`age` 0); or those whose bounds have sunk by
     `age` frames' motion since they were asked for."""
     store = front.store
-    low = min(tied(best), travel.ahead)
+    low = min(tied(best), travel.step)
     if age > 0.0:
         low = tied(best) - age * travel.ahead / FRAMES_AHEAD
     store[LATE], i = HURRIED if age == 0.0 else 1.0, 0
@@ -200,18 +207,45 @@ def settle_rows(a, b, front, travel, best, minima, counts):
 
 
 @kernel
+def settle_all(a, b, front, travel, best, minima, counts):
+    """Look at all rows that are due if the solids are apart; whether they are known to be. If not,
+    and there is time, at those in which they may have a common point."""
+    known = is_known_apart(front, travel)
+    trusting = counted_apart(travel)
+    if not known and front.store[LATE] > 0.0:
+        # where there may be no time for both, the solids are to be known apart first
+        settle_oldest(a, b, front, LONG_OPEN[0], trusting, best, minima, counts)
+        known = hold_all(a, b, front, trusting, best, minima, counts)
+    settle_rows(a, b, front, trusting, best, minima, counts)
+    if known or hold_all(a, b, front, trusting, best, minima, counts):
+        front.store[KNOWN] = max(front.store[KNOWN], travel.gone)
+        return True
+    if best[MET] == 0.0 and front.store[LATE] == 0.0:
+        settle_rows(a, b, front, travel, best, minima, counts)
+    else:
+        best[OPEN] = min(best[OPEN], 0.0)
+    return False
+
+
+@kernel
 def frame(a, b, front, travel, best, minima, counts):
-    """Fill `best` and `minima` as a search does; whether the front was made anew."""
+    """Fill `best` and `minima` as a search does; whether the front was made anew, and whether the
+    solids are known to have stayed apart."""
     store = front.store
-    anew = store[N_ROWS] == 0.0 or has_grown(front, best)
+    anew = store[N_ROWS] == 0.0 or has_grown(front, travel, best)
     if anew:
         make_front(front)
+    # by what was proven before, so before anything is proven of this frame
+    if not is_known_apart(front, travel):
+        hold_rows(front, travel.gone - travel.step, travel)
     above = best[ABOVE]
     if above > 0.0:
         follow_branches(a, b, front, best, minima, counts)
-        find_minima(a, b, front, travel, best, minima, counts)
+        find_minima(a, b, front, counted_apart(travel), best, minima, counts)
         best[ABOVE] = 0.0  # what is to be proven does not depend on it
-    settle_rows(a, b, front, travel, best, minima, counts)
+    sure = settle_all(a, b, front, travel, best, minima, counts)
+    if sure:
+        travel = counted_apart(travel)
     if store[MAKING] > 0.0:
         store[COST] += evaluations(counts)
         if best[N_OPEN] == 0.0:
@@ -227,7 +261,7 @@ def frame(a, b, front, travel, best, minima, counts):
     if above > 0.0:
         best[ABOVE] = above
         bound_found(front, travel, best, minima)
-    return anew
+    return anew, sure
 
 
 @kernel

@@ -38,7 +38,8 @@ from standoff.kernels.solids.front_rows import (
     keep_bound,
     keep_shut,
     open_up,
-    put_row,
+    put_part,
+    share_proven,
     start_of_row,
 )
 from standoff.kernels.solids.over_plane import beside_by, feet_of, has_sides, not_over, plane_of
@@ -92,24 +93,37 @@ def look_at_nodes(a, b, front, k, travel, best, counts):
     if shut > travel.ahead:
         keep_shut(front, k, shut, travel)
         return KEPT
-    key = bound_key(front, k)
+    if shut > 0.0 and is_pair_of_leaves(a, i, b, j):
+        keep_shut(front, k, shut, travel)
+        return KEPT
+    return CUT if cut_nodes(a, b, front, k) else KEPT
+
+
+@kernel
+def is_pair_of_leaves(a, i, b, j):
+    return a.own[node_ints(a, i) + 2] >= 0 and b.own[node_ints(b, j) + 2] >= 0
+
+
+@kernel
+def cut_nodes(a, b, front, k):
+    """Put the parts of a pair of nodes in its place, or the leaves; False: there is no room."""
+    o, key = ROW_REALS * k, bound_key(front, k)
+    i, j = -1 - int(front.rows[o + ROW_A]), -1 - int(front.rows[o + ROW_B])
     ra, rb = node_ints(a, i), node_ints(b, j)
     leaf_a, leaf_b = a.own[ra + 2], b.own[rb + 2]
     if leaf_a >= 0 and leaf_b >= 0:
-        if shut > 0.0:
-            keep_shut(front, k, shut, travel)
-            return KEPT
-        put_row(front, k, leaf_a, leaf_b, leaf_box(a, leaf_a), leaf_box(b, leaf_b), key)
-        return CUT
+        put_part(front, k, leaf_a, leaf_b, (leaf_box(a, leaf_a), leaf_box(b, leaf_b)))
+        return True
     if leaf_b >= 0 or (leaf_a < 0 and node_reach(a, i) >= node_reach(b, j)):
         if not add_row(front, -1 - a.own[ra + 1], -1 - j, NO_BOXES, key, NO_START, False):
-            return KEPT
-        put_row(front, k, -1 - a.own[ra], -1 - j, NOWHERE, NOWHERE, key)
-        return CUT
-    if not add_row(front, -1 - i, -1 - b.own[rb + 1], NO_BOXES, key, NO_START, False):
-        return KEPT
-    put_row(front, k, -1 - i, -1 - b.own[rb], NOWHERE, NOWHERE, key)
-    return CUT
+            return False
+        put_part(front, k, -1 - a.own[ra], -1 - j, NO_BOXES)
+    else:
+        if not add_row(front, -1 - i, -1 - b.own[rb + 1], NO_BOXES, key, NO_START, False):
+            return False
+        put_part(front, k, -1 - i, -1 - b.own[rb], NO_BOXES)
+    share_proven(front, k)
+    return True
 
 
 @kernel

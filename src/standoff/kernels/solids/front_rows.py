@@ -15,16 +15,19 @@ from standoff.kernels.solids import spatial_layout as S
 
 # What a row holds: leaves (-1 - node where it is a node), both boxes, where Newton's method came
 # to last, at which distance, and in which frame; by which way it was closed last.
-ROW_REALS = 37
+ROW_REALS = 38
 ROW_A, ROW_B, ROW_BOXES, ROW_AT, ROW_DISTANCE, ROW_FRAME, ROW_WAY = 0, 1, 2, 10, 14, 15, 16
 # And how B was when a row was last looked at, so that the row's own motion since can be told: the
-# bound proven then, the direction it was proven along (3), how much the slope may differ from that,
+# bound proven then, the direction it was proven along (3), by how much the slope bends per length,
 # and up to which shift; the length it was shut for, and up to which goal; the centre of a ball
 # round B's piece in B's frame and in A's (3 each), its radius, and B's turn (4).
-ROW_LOW, ROW_SLOPE, ROW_SPREAD, ROW_ROOM, ROW_FREE, ROW_GOAL = 17, 18, 21, 22, 23, 24
+ROW_LOW, ROW_SLOPE, ROW_BEND, ROW_ROOM, ROW_FREE, ROW_GOAL = 17, 18, 21, 22, 23, 24
 ROW_CENTRE, ROW_WAS, ROW_RADIUS, ROW_TURN = 25, 28, 31, 32
 # Farthest that a point of A's piece is from that centre, for what is shut by planes.
 ROW_FAR = 36
+# Up to which motion a row is known, at every moment since the solids were last known to be apart,
+# not to hold the points in which they come together (``front_held``).
+ROW_HELD = 37
 # Of a row: not yet known whether it is on both faces; not closed by any potential.
 UNSEEN, NO_WAY = -2.0, -1.0
 # What became of a row: it stays as it is, its parts are in its place, or it is gone; or more is to
@@ -38,11 +41,11 @@ KEY_REALS, RESTS_TO, AWAKE = 4, 2, 3
 # the front had when it was made, how many frames there were, 1 until a front that is being made
 # has no open rows, and how many evaluations it took to make it; how many branches there are,
 # what the next new one is called, and how many have come to the place of another one in this call.
-# How many rows are awake; all others rest up to a motion, for goals up to a length; and 1 if the
-# last frame ran out of time.
+# How many rows are awake; all others rest up to a motion, for goals up to a length; 1 if the
+# last frame ran out of time; and up to which motion the solids are known to stay apart.
 N_ROWS, GONE, N_MADE, FRAME, MAKING, COST, N_BRANCHES, NEXT_BRANCH = 0, 1, 2, 3, 4, 5, 6, 7
-N_MERGED, N_AWAKE, RESTS_UP_TO, RESTS_BELOW, LATE = 8, 9, 10, 11, 12
-STORE_REALS = 13
+N_MERGED, N_AWAKE, RESTS_UP_TO, RESTS_BELOW, LATE, KNOWN = 8, 9, 10, 11, 12, 13
+STORE_REALS = 14
 
 
 # Of `LATE`: while rows are looked at in which the solids may come together soon.
@@ -71,12 +74,15 @@ class Travel(NamedTuple):
     radius : of B, length, by which turns are counted.
     turn : radians by which B turns at most, per length of the motion.
     afar : how much more than the motion a point of A moves as B sees it.
-    sure : are the solids known to be apart, as they were, and have not moved so far?
+    sure : do the solids count as apart, so that what is shut need not be looked at?
     pose : of B in A's frame.
     quaternion : of B's turn.
     spare : for the rounding of a shift, length.
     above : local minima are kept up to this distance, length; a plane's face shuts none out.
     wider : how much of that is for their patches alone, length.
+    step : the motion of this frame alone, length.
+    last : pose of B in the frame before.
+    last_turn : quaternion of it.
     """
 
     gone: Any
@@ -90,6 +96,9 @@ class Travel(NamedTuple):
     spare: Any
     above: Any
     wider: Any
+    step: Any
+    last: Any
+    last_turn: Any
 
 
 @kernel
@@ -102,7 +111,7 @@ def add_row(front, i, j, boxes, bound, q, known):
         return False
     put_row(front, n, i, j, box_a, box_b, bound)
     o = ROW_REALS * n
-    front.rows[o + ROW_DISTANCE] = 0.0 if known else inf
+    front.rows[o + ROW_DISTANCE], front.rows[o + ROW_HELD] = 0.0 if known else inf, -inf
     for k in range(4):
         front.rows[o + ROW_AT + k] = q[k]
     front.store[N_ROWS] += 1.0
@@ -144,7 +153,9 @@ def list_awake(front, goal, rest, travel):
         if bound_key(front, k) == inf:
             drop_row(front, k)
             continue
-        if not is_at_rest(front, k, store[RESTS_BELOW], store[RESTS_UP_TO]):
+        hold(front, k, travel.gone - travel.step, travel.spare)
+        at_rest = is_at_rest(front, k, store[RESTS_BELOW], store[RESTS_UP_TO])
+        if not at_rest or held_to(front, k) < store[RESTS_UP_TO]:
             awaken(front, k)
         k += 1
 
@@ -157,6 +168,23 @@ def apart_to(front, k):
     shut holds none, and one with a bound above 0 none that is so near.
     """
     return max(front.keys[KEY_REALS * k], front.keys[KEY_REALS * k + 1])
+
+
+@kernel
+def held_to(front, k):
+    """Up to which motion a row is held: at no moment up to then do the solids come together in
+    it."""
+    return max(front.rows[ROW_REALS * k + ROW_HELD], front.store[KNOWN])
+
+
+@kernel
+def hold(front, k, now, spare):
+    """What is proven of a row at the motion `now` lasts as far back as on: if it goes back to where
+    the row is held up to, it is held on."""
+    to = apart_to(front, k) - spare
+    if 2.0 * now - to <= held_to(front, k):
+        o = ROW_REALS * k + ROW_HELD
+        front.rows[o] = max(front.rows[o], to)
 
 
 @kernel
@@ -173,20 +201,34 @@ def put_row(front, k, i, j, box_a, box_b, bound):
 
 
 @kernel
+def put_part(front, k, i, j, boxes):
+    """Put a part of what a row holds in its place: what was proven of the whole, and along which
+    slope, is true of it."""
+    o, low = ROW_REALS * k + ROW_LOW, front.rows[ROW_REALS * k + ROW_LOW]
+    shut = front.keys[KEY_REALS * k + 1]
+    put_row(front, k, i, j, boxes[0], boxes[1], bound_key(front, k))
+    front.rows[o], front.keys[KEY_REALS * k + 1] = low, shut
+
+
+@kernel
+def share_proven(front, k):
+    """The last row is another part of what row `k` held."""
+    o, n, r = ROW_REALS * k, ROW_REALS * (int(front.store[N_ROWS]) - 1), front.rows
+    for i in range(ROW_LOW, ROW_REALS):
+        if i != ROW_FREE:
+            r[n + i] = r[o + i]
+    front.keys[KEY_REALS * (int(front.store[N_ROWS]) - 1) + 1] = front.keys[KEY_REALS * k + 1]
+
+
+@kernel
 def put_parts(front, k, leaves, parts, q):
     """Put both parts (boxes of A, of B) of a pair of leaves' parts in its place: what was proven of
     the whole, and along which slope, is true of them. False: there is no room."""
     first, second = parts
-    key, r = bound_key(front, k), front.rows
-    if not add_row(front, leaves[0], leaves[1], second, key, q, True):
+    if not add_row(front, leaves[0], leaves[1], second, bound_key(front, k), q, True):
         return False
-    o, n = ROW_REALS * k, ROW_REALS * (int(front.store[N_ROWS]) - 1)
-    low = r[o + ROW_LOW]
-    put_row(front, k, leaves[0], leaves[1], first[0], first[1], key)
-    r[o + ROW_LOW] = low
-    for i in range(ROW_LOW, ROW_REALS):
-        if i != ROW_FREE:
-            r[n + i] = r[o + i]
+    put_part(front, k, leaves[0], leaves[1], first)
+    share_proven(front, k)
     return True
 
 
@@ -242,7 +284,9 @@ def begin_motion(front, spare):
     for k in range(int(front.store[N_ROWS])):
         for i in range(AWAKE):
             front.keys[KEY_REALS * k + i] -= gone + spare
+        front.rows[ROW_REALS * k + ROW_HELD] -= gone + spare
     front.store[GONE], front.store[RESTS_UP_TO] = 0.0, -inf
+    front.store[KNOWN] -= gone + spare
 
 
 @kernel

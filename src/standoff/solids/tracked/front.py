@@ -225,6 +225,10 @@ class Frames:
         before[:12] = pose[0]
         before[12], before[13] = row[DISTANCE], row[BOUND]
 
+    def not_apart(self) -> None:
+        """After the last frame the solids are not known to be apart."""
+        self.before[13] = 0.0
+
     def told(self, told: Array) -> Array:
         """Rows of what the last call told of local minima, of frames with rows `told`."""
         total = int(told[:, N_SETS].sum())

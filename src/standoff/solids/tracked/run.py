@@ -180,6 +180,8 @@ class Run:
         self.minima.append(frames.minima)
         self.inside[first:end] = inside
         settled = self._settled(end - 1, frames, inside)
+        if not settled:  # what is proven of the boundaries does not hold the solids apart
+            frames.not_apart()
         for k, key, into in frames.merged().tolist():
             self.merged[first + k, key] = into
         return settled
