@@ -182,11 +182,11 @@ def wake_alike(both, front, leaves):
     for k in range(int(front.store[N_ROWS])):
         o = CONTACT_REALS * k
         if (
-            rows[o + C_TOLD] == HELD
+            waits(front, k)
             and is_of_one_feature(both.a, int(rows[o + C_A]), leaves[0])
             and is_of_one_feature(both.b, int(rows[o + C_B]), leaves[1])
         ):
-            rows[o + C_TOLD], rows[o + C_REST] = CAME_TO_NONE, front.store[GONE]
+            rows[o + C_TOLD], rows[o + C_REST] = CAME_TO_NONE, -inf
 
 
 @kernel
