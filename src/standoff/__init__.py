@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from standoff.bodies.voronoi import voronoi_regions
     from standoff.cad import read_step
     from standoff.control import min_gain
+    from standoff.design import Design, shape_gradient
     from standoff.errors import BodyError, StandoffError
     from standoff.impact import time_of_impact
     from standoff.motion import Pose, Poses, Twist
@@ -53,6 +54,10 @@ else:
             "standoff.bodies.voronoi": ("voronoi_regions",),
             "standoff.cad": ("read_step",),
             "standoff.control": ("min_gain",),
+            "standoff.design": (
+                "Design",
+                "shape_gradient",
+            ),
             "standoff.errors": (
                 "BodyError",
                 "StandoffError",
@@ -112,6 +117,7 @@ else:
 __all__ = [
     "Body",
     "BodyError",
+    "Design",
     "Event",
     "Feature",
     "PaperLaw",
@@ -140,6 +146,7 @@ __all__ = [
     "open_recording",
     "plot",
     "read_step",
+    "shape_gradient",
     "shapes",
     "time_of_impact",
     "track",

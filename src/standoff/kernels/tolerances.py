@@ -321,3 +321,14 @@ MOST_TURNED = 1e-3
 # Part of the way from an edge's end to its middle: there a patch whose side has collapsed at the
 # end has a plane, turned from that at the end by no more than the edge itself turns on the way.
 OFF_COLLAPSED = 1e-3
+
+# Ellipsoids in lanes: at most so many steps of Newton's method for the normal (ordinary ones need
+# four, discs of one fiftieth of their width up to twenty), none by more than LONGEST_TURN (tangent
+# of an angle). The last is one of less than TURNED, as the next would be its square.
+LANE_TURNS = 20
+LONGEST_TURN = 0.5
+TURNED = 1e-5
+# A step that does not raise the value of the support functions is tried again, SHORTENED; NO_GAIN
+# (relative to the ellipsoids' heights) is the roundoff of that value.
+SHORTENED = 0.25
+NO_GAIN = 1e-15

@@ -184,8 +184,13 @@ def normal_noise(kind, reals, jet):
 def normal_of_kind(kind, reals, o, jet):
     """(outward unit normal, bound on its roundoff) of a jet, in the body's frame, of the chart
     whose reals begin at o."""
-    normal = scale(reals[o + L.OUTWARD], unit(cross(jet[1], jet[2])))
-    return normal, normal_noise(kind, reals, jet)
+    return outward(reals[o + L.OUTWARD], jet), normal_noise(kind, reals, jet)
+
+
+@small
+def outward(sign, jet):
+    """The outward unit normal of a jet; the sign is its chart's."""
+    return scale(sign, unit(cross(jet[1], jet[2])))
 
 
 @kernel

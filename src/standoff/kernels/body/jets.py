@@ -219,15 +219,29 @@ def surface_jet(reals, kind, o, u, v):
 @small
 def mapped_jet(reals, o, canonical):
     """The jet of a chart whose reals begin at o, from that of its canonical form."""
-    x, xu, xv, xuu, xuv, xvv = canonical
-    m = o + AFFINE
+    return mapped_by(affine_at(reals, o + AFFINE), canonical)
+
+
+@small
+def affine_at(reals, m):
+    """The affine map at reals[m:], as 12 numbers: the 3x3 by rows, the shift."""
     return (
-        affine_map(reals, m, x),
-        linear_map(reals, m, xu),
-        linear_map(reals, m, xv),
-        linear_map(reals, m, xuu),
-        linear_map(reals, m, xuv),
-        linear_map(reals, m, xvv),
+        reals[m], reals[m + 1], reals[m + 2], reals[m + 3], reals[m + 4], reals[m + 5],
+        reals[m + 6], reals[m + 7], reals[m + 8], reals[m + 9], reals[m + 10], reals[m + 11],
+    )  # fmt: skip
+
+
+@small
+def mapped_by(affine, canonical):
+    """A jet behind an affine map, from that of its canonical form."""
+    x, xu, xv, xuu, xuv, xvv = canonical
+    return (
+        affine_map(affine, 0, x),
+        linear_map(affine, 0, xu),
+        linear_map(affine, 0, xv),
+        linear_map(affine, 0, xuu),
+        linear_map(affine, 0, xuv),
+        linear_map(affine, 0, xvv),
     )
 
 

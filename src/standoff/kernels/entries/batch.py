@@ -1,9 +1,16 @@
 """Cold queries of many poses in one call."""
 
+from math import inf
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
 from standoff.kernels.compiler.decorators import (
     ahead,
     entry,
     ints_at,
+    ints_on_stack,
     kernel,
     pointer,
     reals_on_stack,
@@ -15,19 +22,30 @@ from standoff.kernels.entries.blocks import N_TABLE, copy_pose, tabled_options, 
 from standoff.kernels.entries.frames import clear_counts, start_frame
 from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.frame.restart import anywhere
+from standoff.kernels.lanes.ellipsoids import N_ANSWER, query_block, whole_ellipsoid
+from standoff.kernels.lanes.layout import N_POSE, lane, put_pose
+from standoff.kernels.lanes.layout import ROWS as LANE_ROWS
+from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state.arrays import (
     BAD_ARRAYS,
+    CONVERGED,
     FINE,
     N_MOTION,
     N_OUT,
     N_STATE,
+    OUT_COUNTS,
+    OUT_RATE,
     POSE_A,
     POSE_B,
+    RESIDUAL,
     START_ANYWHERE,
+    STATUS,
     TWIST_A,
+    is_pose,
 )
-from standoff.kernels.values import Work
+from standoff.kernels.tolerances import START_GAP
+from standoff.kernels.values import Pose, Work
 
 
 @kernel
@@ -51,6 +69,81 @@ def start_at(pair, options, pose_a, pose_b, out):
     return start_frame(anywhere, pair, inputs, options, state, START_ANYWHERE, out, work)
 
 
+class Table(NamedTuple):
+    """What all rows of a batch have in common, as pointers to rows of poses (4, 4) and answers."""
+
+    pair: Any
+    options: Any
+    poses_a: Any
+    poses_b: Any
+    stride_a: int  # 0 where one pose is given for all rows
+    stride_b: int
+    outs: Any
+    done: Any  # array
+
+
+@kernel
+def start_row(table, k):
+    """Answer a row by itself."""
+    pose_a = ahead(table.poses_a, table.stride_a * k)
+    pose_b = ahead(table.poses_b, table.stride_b * k)
+    out = ahead(table.outs, N_OUT * k)
+    table.done[k] = start_at(table.pair, table.options, pose_a, pose_b, out)
+
+
+@kernel
+def place_rows(table, first, end, poses, poses_a):
+    """Put a block's poses into lanes: B's in A's frame, and A's. The last row stands for those
+    that lack."""
+    motion = reals_on_stack(N_MOTION)
+    for row in range(LANE_ROWS):
+        k = min(first + row, end - 1)
+        copy_pose(ahead(table.poses_a, table.stride_a * k), ahead(motion, POSE_A))
+        copy_pose(ahead(table.poses_b, table.stride_b * k), ahead(motion, POSE_B))
+        put_pose(relative_pose(ahead(motion, POSE_A), ahead(motion, POSE_B)), poses, row)
+        put_pose(Pose(read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)), poses_a, row)
+
+
+@kernel
+def are_poses(table, k):
+    """Would a row by itself be refused?"""
+    motion = reals_on_stack(N_MOTION)
+    square = copy_pose(ahead(table.poses_a, table.stride_a * k), ahead(motion, POSE_A))
+    square = copy_pose(ahead(table.poses_b, table.stride_b * k), ahead(motion, POSE_B)) and square
+    return square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))
+
+
+@kernel
+def write_row(answers, row, turns, out):
+    """Write a row that was answered in lanes."""
+    for k in range(OUT_COUNTS):
+        out[k] = answers[lane(k, row)]
+    for k in range(OUT_RATE, RESIDUAL):
+        out[k] = np.nan
+    for k in range(N_COUNTS):
+        out[OUT_COUNTS + k] = 0.0
+    out[STATUS] = CONVERGED
+    out[OUT_COUNTS + EVALUATIONS], out[OUT_COUNTS + CORRECTIONS] = turns + 2.0, turns + 1.0
+
+
+@kernel
+def start_ellipsoids(table, first, end):
+    """Answer rows in lanes, block by block; those that are not proven there, by themselves."""
+    poses, poses_a = reals_on_stack(N_POSE), reals_on_stack(N_POSE)
+    answers, good = reals_on_stack(N_ANSWER), ints_on_stack(LANE_ROWS)
+    goal = min(table.options.tolerance, START_GAP)
+    for begin in range(first, end, LANE_ROWS):
+        place_rows(table, begin, end, poses, poses_a)
+        turns = query_block(table.pair, goal, poses, poses_a, answers, good)
+        for row in range(min(LANE_ROWS, end - begin)):
+            k = begin + row
+            if good[row] == 1 and are_poses(table, k):
+                write_row(answers, row, turns, ahead(table.outs, N_OUT * k))
+                table.done[k] = FINE
+            else:
+                start_row(table, k)
+
+
 @entry(INT, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")
 def starts(table, poses_a, poses_b, first, end, outs, done):
     """`start` at rows `first` to `end` - 1 of poses (n, 4, 4), or (1, 4, 4) for all rows.
@@ -60,11 +153,21 @@ def starts(table, poses_a, poses_b, first, end, outs, done):
     tabled = ints_at(table, N_TABLE)
     pair, options = tabled_pair(tabled), tabled_options(tabled)
     at_a, at_b = poses_a.reshape(poses_a.size), poses_b.reshape(poses_b.size)
-    way_a, way_b = pointer(at_a, 0), pointer(at_b, 0)
     rows = outs.reshape(outs.size)
-    row = pointer(rows, 0)
-    one_a, one_b = len(poses_a) == 1, len(poses_b) == 1
-    for k in range(first, end):
-        pose_a = ahead(way_a, 0 if one_a else 16 * k)
-        pose_b = ahead(way_b, 0 if one_b else 16 * k)
-        done[k] = start_at(pair, options, pose_a, pose_b, ahead(row, N_OUT * k))
+    stride_a, stride_b = 0 if len(poses_a) == 1 else 16, 0 if len(poses_b) == 1 else 16
+    given = Table(
+        pair,
+        options,
+        pointer(at_a, 0),
+        pointer(at_b, 0),
+        stride_a,
+        stride_b,
+        pointer(rows, 0),
+        done,
+    )
+    # with a horizon the boxes come first
+    if options.within == inf and whole_ellipsoid(pair.ints_a) and whole_ellipsoid(pair.ints_b):
+        start_ellipsoids(given, first, end)
+    else:
+        for k in range(first, end):
+            start_row(given, k)

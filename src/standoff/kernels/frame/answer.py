@@ -8,7 +8,7 @@ from standoff.kernels.algebra.rigid import read_rotation, read_vector
 from standoff.kernels.algebra.vectors import add, axpy, cross, dot, rotate, scale, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import pair_slack, pair_span
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.pair.certified import (
     CERTIFIED,
     OVERLAP,
@@ -87,6 +87,12 @@ def write_vector(x, to, o):
         to[o + k] = x[k]
 
 
+@small
+def swept_point(R, origin, x, radius, n):
+    """A core's point x moved along n to the swept surface, in world axes."""
+    return add(rotate(R, axpy(radius, n, x)), origin)
+
+
 @kernel
 def write_points(pair, inputs, jets, found, out):
     """Write distance, bounds, witness points on the swept surfaces, and normal."""
@@ -97,8 +103,8 @@ def write_points(pair, inputs, jets, found, out):
     out[DISTANCE] = found.distance - radius_a - radius_b
     out[LOWER_BOUND] = found.lower - radius_a - radius_b
     out[UPPER_BOUND] = found.upper - radius_a - radius_b
-    write_vector(add(rotate(Ra, axpy(radius_a, n, jet_a[0])), origin), out, POINT_A)
-    write_vector(add(rotate(Ra, axpy(-radius_b, n, jet_b[0])), origin), out, POINT_B)
+    write_vector(swept_point(Ra, origin, jet_a[0], radius_a, n), out, POINT_A)
+    write_vector(swept_point(Ra, origin, jet_b[0], -radius_b, n), out, POINT_B)
     write_vector(rotate(Ra, n), out, NORMAL)
     out[RESIDUAL] = gradient_norm(jet_a, jet_b, gradient(projection_errors(jet_a, jet_b)))
 

@@ -1,0 +1,230 @@
+"""``python -m benchmarks.lanes``: cold rows of ellipsoids in lanes, beside the general code.
+
+Times a row of the compiled loops, in turn, medians; the share of the peak of fused multiply-adds
+that was measured in the same run; two threads; and the vector instructions of the machine code.
+Operations are counted by numbers that count, run through the same functions without the compiler.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from statistics import median
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+import standoff as so
+from standoff.kernels.entries import batch
+from standoff.kernels.state import arrays as K
+from standoff.tracking.reached import cold_table
+from standoff.tracking.threads import in_parts
+
+Array = NDArray[np.float64]
+SHAPES = {
+    "0.5, 0.8, 0.9 and 0.15, 0.3, 0.2": ((0.5, 0.8, 0.9), (0.15, 0.3, 0.2)),
+    "1, 0.2, 0.2 and 0.2, 0.2, 1": ((1.0, 0.2, 0.2), (0.2, 0.2, 1.0)),
+    "1, 0.02, 1 and 1, 1, 0.02": ((1.0, 0.02, 1.0), (1.0, 1.0, 0.02)),
+}
+ROUNDS = 5
+BEYOND_ALL = 1e6
+"""A horizon, length, that no row is beyond: it takes the general code."""
+REST = np.eye(4)[None]
+
+
+def drawn(n: int, reach: tuple[float, float]) -> Array:
+    """Random poses (n, 4, 4) at distances in a range from the origin."""
+    rng = np.random.default_rng(1)
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
+    way = rng.normal(size=(n, 3))
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    poses[:, :3, 3] = way * rng.uniform(*reach, size=(n, 1))
+    return poses
+
+
+class Rows:
+    """The compiled loop over rows, with what it writes to."""
+
+    def __init__(self, a: so.Body, b: so.Body, poses: Array, within: float | None) -> None:
+        self.table, self.poses = cold_table(a, b, within), poses
+        self.rows, self.done = np.empty((len(poses), K.N_OUT)), np.zeros(len(poses), dtype=np.int64)
+
+    def run(self, workers: int = 1) -> float:
+        """Seconds."""
+
+        def part(first: int, end: int) -> None:
+            batch.starts(self.table.address, REST, self.poses, first, end, self.rows, self.done)
+
+        begun = time.perf_counter()
+        in_parts(part, len(self.poses), workers)
+        return time.perf_counter() - begun
+
+
+CHAIN = 32
+
+
+@njit(fastmath={"contract"}, error_model="numpy")  # type: ignore[misc]
+def _chains(values: Array, times: int) -> None:
+    for _ in range(times):
+        for k in range(len(values)):
+            x = values[k]
+            for _ in range(CHAIN):
+                x = x * 0.999 + 1e-3
+            values[k] = x
+
+
+def peak() -> float:
+    """Fused multiply-adds a second of one core, measured: independent chains in vectors."""
+    values, times = np.ones(128), 20_000
+    _chains(values, 1)
+    taken = []
+    for _ in range(ROUNDS):
+        begun = time.perf_counter()
+        _chains(values, times)
+        taken.append(time.perf_counter() - begun)
+    return CHAIN * len(values) * times / min(taken)
+
+
+COUNT = r"""
+import json, math
+import numpy as np
+import standoff as so
+from standoff.kernels.algebra import roots
+from standoff.kernels.lanes import ellipsoids
+from standoff.kernels.lanes.layout import ROWS
+from standoff.kernels.values import Pair
+counts = dict.fromkeys(["add", "mul", "div", "sqrt"], 0)
+class Counted(float):
+    pass
+def counting(name, method):
+    plain = getattr(float, method)
+    def operate(self, other):
+        counts[name] += 1
+        return Counted(plain(self, float(other)))
+    setattr(Counted, method, operate)
+for name, methods in {"add": "__add__ __radd__ __sub__ __rsub__", "mul": "__mul__ __rmul__",
+                      "div": "__truediv__ __rtruediv__"}.items():
+    for method in methods.split():
+        counting(name, method)
+Counted.__neg__ = lambda self: Counted(-float(self))
+Counted.__abs__ = lambda self: Counted(abs(float(self)))
+def root(x):
+    counts["sqrt"] += 1
+    return Counted(math.sqrt(x))
+roots._root = root
+ellipsoids.reals_on_stack = lambda count: np.array([Counted(0.0)] * count, dtype=object)
+axes = AXES
+a, b = so.shapes.ellipsoid(*axes[0]), so.shapes.ellipsoid(*axes[1])
+def counted(values):
+    return np.array([Counted(x) for x in values], dtype=object)
+pair = Pair(a.ints, counted(a.reals), b.ints, counted(b.reals))
+rng = np.random.default_rng(1)
+poses = np.empty((12, ROWS))
+for row in range(ROWS):
+    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
+    q = q * np.linalg.det(q)
+    way = rng.normal(size=3)
+    poses[:9, row], poses[9:, row] = q.ravel(), 2.6 * way / np.linalg.norm(way)
+still = np.zeros((12, ROWS)); still[[0, 4, 8]] = 1.0
+answers, good = counted(np.zeros(ellipsoids.N_ANSWER)), np.zeros(ROWS, dtype=np.int64)
+poses, still = counted(poses.ravel()), counted(still.ravel())
+turns = ellipsoids.query_block(pair, 1e-6, poses, still, answers, good)
+whole = dict(counts)
+for key in counts: counts[key] = 0
+state = np.array([Counted(0.1)] * (8 * ROWS), dtype=object)
+of_a, of_b = (ellipsoids.ellipsoid_of(ellipsoids.map_of(body.ints, reals, 0))
+              for body, reals in ((a, pair.reals_a), (b, pair.reals_b)))
+ellipsoids.turn(of_a, of_b, poses, state)
+print(json.dumps({"turns": turns, "whole": {k: v / ROWS for k, v in whole.items()},
+                  "turn": {k: v / ROWS for k, v in counts.items()}, "good": int(good.sum())}))
+"""
+
+
+def operations(axes: Any) -> dict[str, Any]:
+    """Of a row, by kind: all, and those of a turn of the normal."""
+    code = COUNT.replace("AXES", repr(axes))
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "STANDOFF_QUIET": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    counted: dict[str, Any] = json.loads(done.stdout)
+    return counted
+
+
+ASSEMBLY = r"""
+from standoff.kernels.entries import batch
+batch.starts.prepare()
+print(batch.starts.overloads[batch.starts.signature].library.get_asm_str())
+"""
+
+
+def instructions() -> Counter[str]:
+    """Floating-point instructions of the entry's machine code, compiled anew: by width."""
+    with tempfile.TemporaryDirectory() as folder:
+        environment = os.environ | {"NUMBA_CACHE_DIR": folder, "STANDOFF_QUIET": "1"}
+        done = subprocess.run(
+            [sys.executable, "-c", ASSEMBLY],
+            env=environment, capture_output=True, text=True, check=True,
+        )  # fmt: skip
+    found: Counter[str] = Counter()
+    for line in done.stdout.splitlines():
+        name = re.match(r"\s+v?(\w+)\s", line)
+        if name is None or not re.search(r"(add|sub|mul|div|sqrt|max|min)\w*[ps]d$", name[1]):
+            continue
+        widest = next((w for w in ("zmm", "ymm") if w in line), "xmm")
+        fused = "fused " if re.match(r"fn?m(add|sub)", name[1]) else ""
+        found[f"{fused}{widest} {'packed' if name[1].endswith('pd') else 'scalar'}"] += 1
+    return found
+
+
+def compared(axes: tuple[Any, Any], n: int) -> tuple[float, float, float, float]:
+    """(seconds a row in lanes, by two threads, in the general code; largest difference of distances
+    over the size)."""
+    a, b = so.shapes.ellipsoid(*axes[0]), so.shapes.ellipsoid(*axes[1])
+    poses = drawn(n, (1.02 * (max(axes[0]) + max(axes[1])), 4.0))
+    lanes, general = Rows(a, b, poses, None), Rows(a, b, poses[: max(n // 10, 1000)], BEYOND_ALL)
+    taken: dict[str, list[float]] = {"lanes": [], "two": [], "general": []}
+    lanes.run(), general.run()
+    for _ in range(ROUNDS):
+        taken["lanes"].append(lanes.run() / n)
+        taken["two"].append(lanes.run(2) / n)
+        taken["general"].append(general.run() / len(general.poses))
+    miss = abs(lanes.rows[: len(general.rows), K.DISTANCE] - general.rows[:, K.DISTANCE]).max()
+    one, two, other = (median(taken[name]) for name in ("lanes", "two", "general"))
+    return one, two, other, float(miss / (a.size + b.size))
+
+
+def main() -> None:
+    """Print times, ratios, the share of the peak and the counts of instructions."""
+    fused = peak()
+    print(f"peak of one core: {fused / 1e9:.1f} e9 fused multiply-adds a second")
+    for name, axes in SHAPES.items():
+        counted = operations(axes)
+        for n in (1_000, 10_000, 100_000, 1_000_000):
+            one, two, other, miss = compared(axes, n)
+            print(
+                f"{name}, {n:,} rows: {1e9 * one:.0f} ns in lanes, {1e9 * other:.0f} ns in the "
+                f"general code ({other / one:.1f} times), two threads {one / two:.2f} times, "
+                f"distances differ by {miss:.1e} of the size"
+            )
+        whole = counted["whole"]
+        flops = sum(whole.values())
+        print(
+            f"  {counted['turns']} turns: {flops:.0f} operations a row ({whole['div']:.0f} "
+            f"divisions, {whole['sqrt']:.0f} roots), {flops / one / (2.0 * fused):.1%} of the peak"
+        )
+    print("machine code:", dict(sorted(instructions().items())))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,11 @@
+"""Tolerances of derivatives by design, each with its unit and its reason."""
+
+STEP = 1e-3
+"""Of a parameter (of the body's size where it is 0): the step of the differences. With NODES their
+truncation is 3e-14 of the fifth derivative, their roundoff some 2e-13 of the size."""
+NODES = (-2, -1, 1, 2)
+WEIGHTS = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
+"""Of the central difference of fourth order, in steps."""
+ROUGH = 1e-3
+"""Of a rate (or of the body's size over the parameter): differences of second and of fourth order
+agree to 1e-6 of it where a boundary moves smoothly, and not at all where it jumps."""

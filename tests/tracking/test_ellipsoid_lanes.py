@@ -1,0 +1,136 @@
+"""Cold rows of two ellipsoids, which are answered in lanes: beside pairs that are exact by
+construction, and beside the general code."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+import standoff as so
+from standoff.kernels.lanes.layout import ROWS
+from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS
+from standoff.kernels.state.arrays import OUT_COUNTS
+from standoff.tracking import Status
+
+REST = np.eye(4)
+TOOL, PART = so.shapes.ellipsoid(0.15, 0.3, 0.2), so.shapes.ellipsoid(0.5, 0.8, 0.9)
+AXES = st.tuples(*[st.floats(0.02, 1.0)] * 3)
+
+
+def turned(rng, n):
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
+    return poses
+
+
+def support(axes, R, n):
+    """Points (k, 3) of turned ellipsoids farthest along unit vectors (k, 3), from their centres."""
+    own = np.einsum("kji,kj->ki", R, n) * axes
+    return np.einsum("kij,kj->ki", R, own * axes / np.linalg.norm(own, axis=1, keepdims=True))
+
+
+def placed(axes_a, axes_b, gaps, rng):
+    """(poses of A, poses of B, normals): rows whose distances are the gaps (k,)."""
+    k = len(gaps)
+    poses_a, poses_b, n = turned(rng, k), turned(rng, k), rng.normal(size=(k, 3))
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    poses_a[:, :3, 3] = rng.uniform(-1.0, 1.0, size=(k, 3))
+    x = poses_a[:, :3, 3] + support(axes_a, poses_a[:, :3, :3], n)
+    arm = support(axes_b, poses_b[:, :3, :3], -n)
+    poses_b[:, :3, 3] = x + gaps[:, None] * n - arm
+    return poses_a, poses_b, n
+
+
+def in_lanes(found):
+    """Which rows (n,) were answered in lanes: one evaluation more than steps."""
+    counts = found.rows[:, OUT_COUNTS:]
+    return counts[:, EVALUATIONS] == counts[:, CORRECTIONS] + 1.0
+
+
+@settings(max_examples=25)
+@given(AXES, AXES, st.integers(0, 2**32 - 1), st.floats(-4.0, 1.0))
+def test_gaps_that_are_exact_by_construction(axes_a, axes_b, seed, decade):
+    rng = np.random.default_rng(seed)
+    a, b = so.shapes.ellipsoid(*axes_a), so.shapes.ellipsoid(*axes_b)
+    gaps = 10.0**decade * rng.uniform(0.5, 1.0, size=2 * ROWS + 5)
+    poses_a, poses_b, n = placed(np.array(axes_a), np.array(axes_b), gaps, rng)
+    found = so.distances(a, b, poses_a, poses_b)
+    roundoff = 1e-14 * (a.size + b.size + gaps + 2.0)
+    assert (abs(found.distance - gaps) <= roundoff).all()
+    assert (found.lower_bound <= gaps + roundoff).all()
+    assert (found.lower_bound <= found.distance).all()
+    assert (found.status == Status.CONVERGED).all()
+    # the normal turns by the roundoff of the points over the least radius of curvature and gap
+    assert (np.linalg.norm(found.normal - n, axis=1) <= 1e-11 / gaps).all()
+    assert in_lanes(found).mean() > 0.9
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.1])
+def test_lanes_answer_as_the_general_code(rng, rounding):
+    a = so.shapes.ellipsoid(0.5, 0.8, 0.9).rounded(rounding) if rounding else PART
+    poses_a, poses_b = turned(rng, 400), turned(rng, 400)
+    poses_a[:, :3, 3], poses_b[:, :3, 3] = rng.uniform(-1.5, 1.5, size=(2, 400, 3))
+    found = so.distances(a, TOOL, poses_a, poses_b)
+    # a horizon that nothing is beyond: it takes the general code
+    general = so.distances(a, TOOL, poses_a, poses_b, within=1e6)
+    lanes = in_lanes(found)
+    assert not in_lanes(general)[general.distance > 1e-3].any()
+    assert (lanes == (general.status == Status.CONVERGED)).mean() > 0.99
+    assert 0.5 < lanes.mean() < 0.99
+    assert (found.status == general.status).all()
+    size = a.size + TOOL.size
+    for name in ("distance", "lower_bound", "upper_bound"):
+        one, other = getattr(found, name), getattr(general, name)
+        np.testing.assert_allclose(one[lanes], other[lanes], rtol=0.0, atol=1e-13 * size)
+    for name in ("point_a", "point_b", "normal"):
+        one, other = getattr(found, name), getattr(general, name)
+        np.testing.assert_allclose(one[lanes], other[lanes], rtol=0.0, atol=1e-9 * size)
+    assert (found.rows[~lanes] == general.rows[~lanes])[:, :OUT_COUNTS].all(axis=1).any()
+    np.testing.assert_array_equal(found.distance[~lanes], general.distance[~lanes])
+
+
+def test_a_row_does_not_depend_on_its_neighbours(rng):
+    poses = turned(rng, 3 * ROWS + 7)
+    poses[:, :3, 3] = rng.uniform(-2.0, 2.0, size=(len(poses), 3))
+    found = so.distances(PART, TOOL, REST, poses)
+    order = rng.permutation(len(poses))
+    again = so.distances(PART, TOOL, REST, poses[order], workers=3)
+    assert found.rows[order][:, :OUT_COUNTS].tobytes() == again.rows[:, :OUT_COUNTS].tobytes()
+    for k in (0, ROWS - 1, ROWS, len(poses) - 1):
+        alone = so.distances(PART, TOOL, REST, poses[k])
+        assert alone.rows[0, :OUT_COUNTS].tobytes() == found.rows[k, :OUT_COUNTS].tobytes()
+
+
+def test_refused_rows_among_them(rng):
+    poses = turned(rng, 2 * ROWS)
+    poses[:, :3, 3] = [2.0, 0.0, 0.0]
+    sound = so.distances(PART, TOOL, REST, poses)
+    poses[5, 0, 0], poses[ROWS + 1, :3, 0] = np.nan, -poses[ROWS + 1, :3, 0]
+    found = so.distances(PART, TOOL, REST, poses)
+    assert sorted(found.errors) == [5, ROWS + 1]
+    assert np.isnan(found.distance[[5, ROWS + 1]]).all()
+    good = np.setdiff1d(np.arange(2 * ROWS), [5, ROWS + 1])
+    np.testing.assert_array_equal(found.distance[good], sound.distance[good])
+
+
+def test_answers_of_single_rows_are_whole(rng):
+    poses = turned(rng, 4)
+    poses[:, :3, 3] = [1.5, 0.4, 0.1]
+    found = so.distances(PART, TOOL, REST, poses)
+    single = [so.distance(PART, TOOL, REST, pose) for pose in poses]
+    for k, answer in enumerate(single):
+        row = found[k]
+        assert (row.feature_a, row.feature_b) == (answer.feature_a, answer.feature_b)
+        assert row.residual <= 1e-14
+        np.testing.assert_allclose(row.gradient, answer.gradient, atol=1e-9)
+
+
+def test_a_sphere_of_patches_inside_another_is_left_to_the_general_code():
+    big, small = so.shapes.ellipsoid(1.0, 1.0, 1.0), so.shapes.ellipsoid(0.2, 0.2, 0.2)
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[1, 0, 3], poses[2, 0, 3] = 0.5, 1.25
+    found = so.distances(big, small, REST, poses)
+    np.testing.assert_allclose(found.distance, [-1.2, -0.7, 0.05], atol=1e-12)
+    assert in_lanes(found)[2]
+    assert [status.name for status in found.status] == ["GLOBAL", "GLOBAL", "CONVERGED"]
