@@ -43,9 +43,10 @@ def placed(axes_a, axes_b, gaps, rng):
 
 
 def in_lanes(found):
-    """Which rows (n,) were answered in lanes: one evaluation more than steps."""
+    """Which rows (n,) were answered in lanes: apart, with one evaluation more than steps."""
     counts = found.rows[:, OUT_COUNTS:]
-    return counts[:, EVALUATIONS] == counts[:, CORRECTIONS] + 1.0
+    apart = found.status == Status.CONVERGED
+    return apart & (counts[:, EVALUATIONS] == counts[:, CORRECTIONS] + 1.0)
 
 
 @settings(max_examples=25)
@@ -68,14 +69,14 @@ def test_gaps_that_are_exact_by_construction(axes_a, axes_b, seed, decade):
 
 @pytest.mark.parametrize("rounding", [0.0, 0.1])
 def test_lanes_answer_as_the_general_code(rng, rounding):
-    a = so.shapes.ellipsoid(0.5, 0.8, 0.9).rounded(rounding) if rounding else PART
+    a = so.shapes.ellipsoid(0.5, 0.8, 0.9, rounding=rounding)
     poses_a, poses_b = turned(rng, 400), turned(rng, 400)
     poses_a[:, :3, 3], poses_b[:, :3, 3] = rng.uniform(-1.5, 1.5, size=(2, 400, 3))
     found = so.distances(a, TOOL, poses_a, poses_b)
     # a horizon that nothing is beyond: it takes the general code
     general = so.distances(a, TOOL, poses_a, poses_b, within=1e6)
     lanes = in_lanes(found)
-    assert not in_lanes(general)[general.distance > 1e-3].any()
+    assert not in_lanes(general).any()
     assert (lanes == (general.status == Status.CONVERGED)).mean() > 0.99
     assert 0.5 < lanes.mean() < 0.99
     assert (found.status == general.status).all()
@@ -86,8 +87,7 @@ def test_lanes_answer_as_the_general_code(rng, rounding):
     for name in ("point_a", "point_b", "normal"):
         one, other = getattr(found, name), getattr(general, name)
         np.testing.assert_allclose(one[lanes], other[lanes], rtol=0.0, atol=1e-9 * size)
-    assert (found.rows[~lanes] == general.rows[~lanes])[:, :OUT_COUNTS].all(axis=1).any()
-    np.testing.assert_array_equal(found.distance[~lanes], general.distance[~lanes])
+    np.testing.assert_array_equal(found.rows[~lanes], general.rows[~lanes])
 
 
 def test_a_row_does_not_depend_on_its_neighbours(rng):
@@ -96,10 +96,10 @@ def test_a_row_does_not_depend_on_its_neighbours(rng):
     found = so.distances(PART, TOOL, REST, poses)
     order = rng.permutation(len(poses))
     again = so.distances(PART, TOOL, REST, poses[order], workers=3)
-    assert found.rows[order][:, :OUT_COUNTS].tobytes() == again.rows[:, :OUT_COUNTS].tobytes()
+    assert found.rows[order].tobytes() == again.rows.tobytes()
     for k in (0, ROWS - 1, ROWS, len(poses) - 1):
         alone = so.distances(PART, TOOL, REST, poses[k])
-        assert alone.rows[0, :OUT_COUNTS].tobytes() == found.rows[k, :OUT_COUNTS].tobytes()
+        assert alone.rows[0].tobytes() == found.rows[k].tobytes()
 
 
 def test_refused_rows_among_them(rng):
@@ -132,5 +132,4 @@ def test_a_sphere_of_patches_inside_another_is_left_to_the_general_code():
     poses[1, 0, 3], poses[2, 0, 3] = 0.5, 1.25
     found = so.distances(big, small, REST, poses)
     np.testing.assert_allclose(found.distance, [-1.2, -0.7, 0.05], atol=1e-12)
-    assert in_lanes(found)[2]
-    assert [status.name for status in found.status] == ["GLOBAL", "GLOBAL", "CONVERGED"]
+    assert in_lanes(found).tolist() == [False, False, True]

@@ -22,7 +22,7 @@ from standoff.kernels.entries.blocks import N_TABLE, copy_pose, tabled_options, 
 from standoff.kernels.entries.frames import clear_counts, start_frame
 from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.frame.restart import anywhere
-from standoff.kernels.lanes.ellipsoids import N_ANSWER, query_block, whole_ellipsoid
+from standoff.kernels.lanes.ellipsoids import N_ANSWER, TRIED, query_block, whole_ellipsoid
 from standoff.kernels.lanes.layout import N_POSE, lane, put_pose
 from standoff.kernels.lanes.layout import ROWS as LANE_ROWS
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
@@ -114,7 +114,7 @@ def are_poses(table, k):
 
 
 @kernel
-def write_row(answers, row, turns, out):
+def write_row(answers, row, out):
     """Write a row that was answered in lanes."""
     for k in range(OUT_COUNTS):
         out[k] = answers[lane(k, row)]
@@ -123,7 +123,8 @@ def write_row(answers, row, turns, out):
     for k in range(N_COUNTS):
         out[OUT_COUNTS + k] = 0.0
     out[STATUS] = CONVERGED
-    out[OUT_COUNTS + EVALUATIONS], out[OUT_COUNTS + CORRECTIONS] = turns + 2.0, turns + 1.0
+    tried = answers[lane(TRIED, row)]
+    out[OUT_COUNTS + EVALUATIONS], out[OUT_COUNTS + CORRECTIONS] = tried + 2.0, tried + 1.0
 
 
 @kernel
@@ -134,11 +135,11 @@ def start_ellipsoids(table, first, end):
     goal = min(table.options.tolerance, START_GAP)
     for begin in range(first, end, LANE_ROWS):
         place_rows(table, begin, end, poses, poses_a)
-        turns = query_block(table.pair, goal, poses, poses_a, answers, good)
+        query_block(table.pair, goal, poses, poses_a, answers, good)
         for row in range(min(LANE_ROWS, end - begin)):
             k = begin + row
             if good[row] == 1 and are_poses(table, k):
-                write_row(answers, row, turns, ahead(table.outs, N_OUT * k))
+                write_row(answers, row, ahead(table.outs, N_OUT * k))
                 table.done[k] = FINE
             else:
                 start_row(table, k)

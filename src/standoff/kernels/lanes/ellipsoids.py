@@ -4,10 +4,9 @@ The normal is found by support functions, the witness points by one step of the 
 there; the certificate weighs them as it does any others.
 """
 
-from math import inf
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.vectors import add, dot, norm, rotate, scale, sub
+from standoff.kernels.algebra.vectors import add, rotate, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record, moved_jet, outward, pair_span
 from standoff.kernels.body.jets import affine_at, chart_parameters, mapped_by, sphere_jet
@@ -24,7 +23,15 @@ from standoff.kernels.lanes.layout import (
     twelve_of,
     vector_of,
 )
-from standoff.kernels.lanes.support import Turn, ahead, ellipsoid_of, farthest, turned
+from standoff.kernels.lanes.support import (
+    Turn,
+    ahead,
+    begun,
+    ellipsoid_of,
+    farthest,
+    is_settled,
+    turned,
+)
 from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone, certify_cones
 from standoff.kernels.pair.certified import CERTIFIED, outcome_of
 from standoff.kernels.pair.newton import ldl, ldl_solve, metric_norm, pair_metric
@@ -41,17 +48,20 @@ from standoff.kernels.state.arrays import (
     RESIDUAL,
     UPPER_BOUND,
 )
-from standoff.kernels.tolerances import AT_REST, EPS, LANE_TURNS, POLISHED, TURNED
+from standoff.kernels.tolerances import AT_REST, EPS, LANE_TURNS, POLISHED
 from standoff.kernels.values import ORIGIN, Place
 
 # A side's lanes: parameters, how deep its chart sees the point; then the chart's affine map is
 # 12 lanes of their own.
 P, Q, DEPTH, OUTWARD = range(4)
 N_SIDE = 4 * ROWS
-# Newton's method for the normal: the normal, the step from there, the value, the share.
-STEP, VALUE, SHARE = 3, 6, 7
-N_TURN = 8 * ROWS
-N_ANSWER = OUT_COUNTS * ROWS
+# Newton's method for the normal: the normal, the step from there, the value, the share,
+# the count.
+STEP, VALUE, SHARE, COUNT = 3, 6, 7, 8
+N_TURN = 9 * ROWS
+# An answer's lanes: the numbers of a row before its counts, then how many normals were tried.
+TRIED = OUT_COUNTS
+N_ANSWER = (OUT_COUNTS + 1) * ROWS
 
 
 class Side(NamedTuple):
@@ -79,14 +89,11 @@ def map_of(ints, reals, chart):
 
 
 @small
-def towards(a, b, poses, turns):
-    """Begin with the unit vectors from centre to centre."""
-    for row in range(ROWS):
-        pose = pose_of(poses, row)
-        way = sub(add(rotate(pose.R, b.centre), pose.p), a.centre)
-        put_vector(scale(1.0 / norm(way), way), turns, 0, row)
-        put_vector(ORIGIN, turns, STEP, row)
-        turns[lane(VALUE, row)], turns[lane(SHARE, row)] = -inf, 1.0
+def put_turn(turn, turns, row):
+    put_vector(turn.normal, turns, 0, row)
+    put_vector(turn.step, turns, STEP, row)
+    turns[lane(VALUE, row)], turns[lane(SHARE, row)] = turn.value, turn.share
+    turns[lane(COUNT, row)] = turn.count
 
 
 @small
@@ -96,38 +103,41 @@ def turn_of(turns, row):
         turns[lane(VALUE, row)],
         vector_of(turns, STEP, row),
         turns[lane(SHARE, row)],
+        turns[lane(COUNT, row)],
     )
+
+
+@small
+def towards(a, b, poses, turns):
+    """Begin with the directions from centre to centre."""
+    for row in range(ROWS):
+        pose = pose_of(poses, row)
+        put_turn(begun(sub(add(rotate(pose.R, b.centre), pose.p), a.centre)), turns, row)
 
 
 @small
 def turn(a, b, poses, turns):
     """A step of every row."""
     for row in range(ROWS):
-        new = turned(a, b, pose_of(poses, row), turn_of(turns, row))
-        put_vector(new.normal, turns, 0, row)
-        put_vector(new.step, turns, STEP, row)
-        turns[lane(VALUE, row)], turns[lane(SHARE, row)] = new.value, new.share
+        put_turn(turned(a, b, pose_of(poses, row), turn_of(turns, row)), turns, row)
 
 
 @small
-def settled(turns):
-    """Is no row due to turn by more than TURNED?"""
-    turning = 0
+def all_settled(turns):
+    moving = 0
     for row in range(ROWS):
-        s = vector_of(turns, STEP, row)
-        turning += 1 if dot(s, s) > TURNED * TURNED else 0
-    return turning == 0
+        moving += 0 if is_settled(turn_of(turns, row)) else 1
+    return moving == 0
 
 
 @small
 def find_normals(a, b, poses, turns):
-    """Turn until the next step is the last, or there were too many: their number."""
+    """Turn until the next step is the last, or there were too many."""
     towards(a, b, poses, turns)
-    for k in range(LANE_TURNS):
+    for _ in range(LANE_TURNS):
         turn(a, b, poses, turns)
-        if settled(turns):
-            return k + 1
-    return LANE_TURNS
+        if all_settled(turns):
+            break
 
 
 @small
@@ -238,14 +248,14 @@ def weigh(pair, tolerance, poses, poses_a, a, b, answers, good):
 
 @kernel
 def query_block(pair, tolerance, poses, poses_a, answers, good):
-    """Cold queries of a block of ellipsoids: how often the normals were turned.
+    """Cold queries of a block of ellipsoids.
 
     poses, poses_a: lanes of B's poses in A's frame, and of A's in world.
     """
     ia, ra, ib, rb = pair
     of_a, of_b = ellipsoid_of(map_of(ia, ra, 0)), ellipsoid_of(map_of(ib, rb, 0))
     turns = reals_on_stack(N_TURN)
-    count = find_normals(of_a, of_b, poses, turns)
+    find_normals(of_a, of_b, poses, turns)
     points_a, points_b = reals_on_stack(N_VECTOR), reals_on_stack(N_VECTOR)
     find_points(of_a, of_b, poses, turns, points_a, points_b)
     a = Side(ints_on_stack(ROWS), reals_on_stack(N_SIDE), reals_on_stack(N_POSE))
@@ -256,4 +266,5 @@ def query_block(pair, tolerance, poses, poses_a, answers, good):
     correct(poses, a, b, steps)
     take(steps, a, b)
     weigh(pair, tolerance, poses, poses_a, a, b, answers, good)
-    return count
+    for row in range(ROWS):
+        answers[lane(TRIED, row)] = turns[lane(COUNT, row)]

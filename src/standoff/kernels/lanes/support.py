@@ -5,13 +5,14 @@ vectors n, with h the support functions from the centres c: of an ellipsoid sqrt
 of its affine map M. Where f >= 0 it is concave along great circles, and Newton's method climbs it.
 """
 
+from math import inf
 from typing import NamedTuple
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, axpy, dot, norm, rotate, rotate_back, scale, sub
 from standoff.kernels.compiler.decorators import small
-from standoff.kernels.tolerances import LEAST_DIVISOR, LONGEST_TURN, NO_GAIN, SHORTENED
-from standoff.kernels.values import Vector
+from standoff.kernels.tolerances import LEAST_DIVISOR, LONGEST_TURN, NO_GAIN, SHORTENED, TURNED
+from standoff.kernels.values import ORIGIN, Vector
 
 
 class Ellipsoid(NamedTuple):
@@ -91,24 +92,41 @@ class Turn(NamedTuple):
     value: float  # f there
     step: Vector  # from there, square to it
     share: float  # how much of the step is tried next
+    count: float  # of normals tried
+
+
+@small
+def begun(way):
+    """At a direction, with nothing known of it."""
+    return Turn(scale(1.0 / norm(way), way), -inf, ORIGIN, 1.0, 0.0)
 
 
 @small
 def turned(a, b, pose, last):
     """Try a share of the last step: where f has grown take it, and find the next; elsewhere a
-    smaller share is due."""
+    smaller share is due. Settled ones stay as they are, whatever their neighbours do."""
+    still = is_settled(last)
     n = ahead(last)
     at = farthest(a, b, pose, n)
     gap = sub(at.x_b, at.x_a)
     f = dot(n, gap)
     better = f >= last.value - NO_GAIN * (at.a.height + at.b.height)
     step = newton_step(a, b, pose, n, at, gap, f)
+    take = better and not still
+    share = 1.0 if better else SHORTENED * last.share
     return Turn(
-        chosen(better, n, last.normal),
-        f if better else last.value,
-        chosen(better, step, last.step),
-        1.0 if better else SHORTENED * last.share,
+        chosen(take, n, last.normal),
+        f if take else last.value,
+        chosen(take, step, last.step),
+        last.share if still else share,
+        last.count if still else last.count + 1.0,
     )
+
+
+@small
+def is_settled(turn):
+    """Is the next step the last?"""
+    return turn.count > 0.0 and dot(turn.step, turn.step) <= TURNED * TURNED
 
 
 @small
