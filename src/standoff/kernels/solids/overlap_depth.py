@@ -28,6 +28,14 @@ class Two(NamedTuple):
     probe: Any
 
 
+class Ball(NamedTuple):
+    """A ball in A's frame, and the depth that it proves."""
+
+    middle: Any
+    radius: Any
+    depth: Any
+
+
 @kernel
 def in_b(two, x):
     """A point of A's frame in B's."""
@@ -57,10 +65,10 @@ def away_from(x, nearest, depth):
 
 
 @kernel
-def ball_depth(two, middle, about):
-    """The same by a ball that is proven to be inside both solids, around a point in A's frame, or
-    one that both boundaries are farther from; 0: none was found."""
-    radius, depth = 0.0, 0.0
+def ball_inside(two, middle, about):
+    """A ball that is proven to be inside both solids, around a point in A's frame, or one that both
+    boundaries are farther from, and what it proves; a radius of 0: none was found."""
+    ball = Ball(middle, 0.0, 0.0)
     for _ in range(MOST_PUSHES):
         side, low, nearest = depth_beside(two.a, middle, about, two.probe)
         in_a, way_a = -side * low, away_from(middle, nearest, -side * low)
@@ -68,13 +76,13 @@ def ball_depth(two, middle, about):
         side, low, nearest = depth_beside(two.b, own, about, two.probe)
         deep, way = -side * low, rotate(two.pose.R, away_from(own, nearest, -side * low))
         least = min(in_a, deep)
-        if least > radius:
-            radius, depth = least, in_a + deep
+        if least > ball.radius:
+            ball = Ball(middle, least, in_a + deep)
         if least >= BALL * about:
             break
         middle = add(middle, scale(max(about - in_a, 0.0), way_a))
         middle = add(middle, scale(max(about - deep, 0.0), way))
-    return depth
+    return ball
 
 
 @kernel
@@ -99,7 +107,8 @@ def depth_at(two, found, k, enough):
     x, y = points_of(minima, MINIMUM_REALS * int(sets[s + SET_ROW]))
     depth = least_depth(two, x, y, about)
     if depth <= enough:
-        depth = max(depth, ball_depth(two, middle_of(minima, count, number), 0.5 * about))
+        middle = middle_of(minima, count, number)
+        depth = max(depth, ball_inside(two, middle, 0.5 * about).depth)
     tried = 0
     for i in range(count):
         o = MINIMUM_REALS * i
