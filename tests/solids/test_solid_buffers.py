@@ -12,7 +12,9 @@ from test_tracked_solids import wandering
 
 import standoff as so
 from families.solid_shapes import bolt, bracket, tube
+from standoff.kernels.entries.solid_contact import FIRST, follow_contact
 from standoff.solids import SolidFrameBuffer, SolidProximity
+from standoff.solids.tracked import contact, frame_buffer
 from standoff.tracking.status import Status
 
 Array = np.ndarray
@@ -127,6 +129,38 @@ def test_a_leap_into_the_other_solid() -> None:
         assert buffer.distance == answer.distance
         met.append(answer.status.name)
     assert met == ["CONVERGED", "CONTAINED", "CONTAINED", "CONVERGED"]
+
+
+@pytest.mark.parametrize("asked", [{}, {"minima": 0.2}])
+def test_places_that_prove_nothing(asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A frame in overlap that the places kept do not prove is looked at as one of which nothing is
+    known, in place as in a step."""
+    refusing = [False]
+
+    def refused(*given: Any) -> None:
+        follow_contact(*given)
+        if refusing.pop():
+            given[4][5][FIRST] = -1.0
+        refusing.append(False)
+
+    for module in (contact, frame_buffer):
+        monkeypatch.setattr(module, "follow_contact", refused)
+    lid, pad = so.Solid(so.shapes.box((4, 4, 1))), so.shapes.box((1, 1, 1))
+    poses = carried(down(tuple(np.linspace(1.03, 0.96, 16)), (0.02, 0.03, 0.0)))
+    tracker = so.Tracker(lid, pad, **asked)
+    state = tracker.start(A, poses[0])
+    buffer, seen = tracker.buffer(state), 0
+    for k, pose in enumerate(poses):
+        again = state.proximity.overlap is not None and k % 3 == 0
+        seen += again
+        refusing[0] = again
+        state, answer = tracker.step(state, A, pose)
+        refusing[0] = again
+        tracker.step_into(buffer, A, pose)
+        is_same(buffer, answer)
+        if again:
+            assert answer.status is Status.OVERLAPPING
+    assert seen > 2
 
 
 def test_poses_are_read_in_every_form() -> None:

@@ -30,22 +30,22 @@ from standoff.kernels.solids.spatial_progress import (
 KEEPS = types.Tuple((WRITE, WRITE, WRITE, WRITE, WRITE, WRITE))
 # What a search for a point's depth fills, and its room.
 PROBING = types.Tuple((WRITE, WRITE, ROOM))
-# What a frame tells: its places; the deepest that is felt, -1 where no overlap is proven; a length
-# that no translation is less than which parts the solids; of that place the signed distance, both
-# points and the normal; and a ball that is inside both: its middle and radius. A's frame.
-N_PLACES, FIRST, DEPTH, DISTANCE, AT_BOTH, ALONG, MIDDLE, RADIUS = 0, 1, 2, 3, 4, 10, 13, 16
-TOLD_REALS = 17
+# What a frame tells: how many places; the deepest that is felt, -1 where no overlap is proven; a
+# length that no translation is less than which parts the solids; and of that place the signed
+# distance, both points and the normal, A's frame.
+N_PLACES, FIRST, DEPTH, DISTANCE, AT_BOTH, ALONG = 0, 1, 2, 3, 4, 10
+TOLD_REALS = 13
 
 
 @kernel
 def tell_met(met, row, room, told):
     """`row`: of a set of minima, that of the deepest place which is felt."""
     o = AT_NORMALS + MINIMUM_REALS * int(row[SET_ROW])
-    told[DISTANCE], told[DEPTH], told[RADIUS] = row[0], met.depth, met.ball.radius
+    told[DISTANCE], told[DEPTH] = row[0], met.depth
     for k in range(6):
         told[AT_BOTH + k] = room[o + POINTS + k]
     for k in range(3):
-        told[ALONG + k], told[MIDDLE + k] = room[o + NORMAL + k], met.ball.middle[k]
+        told[ALONG + k] = room[o + NORMAL + k]
 
 
 # As a search has them, and what sets of minima are written to.

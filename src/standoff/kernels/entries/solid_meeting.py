@@ -28,9 +28,8 @@ from standoff.kernels.solids.contact_sets import NO_MINIMUM
 from standoff.kernels.solids.front_branches import BRANCH_REALS
 from standoff.kernels.solids.front_rows import N_BRANCHES, NEXT_BRANCH
 from standoff.kernels.solids.minima_sets import SET_REALS
-from standoff.kernels.solids.overlap_depth import Ball, ball_inside, depth_at, middle_of
+from standoff.kernels.solids.overlap_depth import PLENTY, ball_depth, depth_at, middle_of
 from standoff.kernels.solids.point_depth import ask_search
-from standoff.kernels.solids.spatial_pieces import ZERO
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BOUND,
@@ -50,13 +49,11 @@ class Met(NamedTuple):
     n : how many places there are.
     first : the deepest that is felt; -1 where it is not proven that the solids overlap.
     depth : no translation shorter than this parts the solids.
-    ball : one that is inside both, at that place.
     """
 
     n: Any
     first: Any
     depth: Any
-    ball: Any
 
 
 @kernel
@@ -105,11 +102,12 @@ def meet_at(two, both, kept, asked, room, counts):
             if depth <= enough:
                 depth = depth_at(two, (room, minima, sets), k, enough)
     if first < 0 or depth <= enough:
-        return Met(n, -1, depth, Ball(ZERO, 0.0, 0.0))
+        return Met(n, -1, depth)
     o = SET_REALS * first
-    middle = middle_of(minima, int(room[N_MINIMA]), sets[o + BOUND])
-    ball = ball_inside(two, middle, -0.5 * sets[o])
-    return Met(n, first, max(depth, ball.depth), ball)
+    if depth < PLENTY * -sets[o]:
+        middle = middle_of(minima, int(room[N_MINIMA]), sets[o + BOUND])
+        depth = max(depth, ball_depth(two, middle, -0.5 * sets[o]))
+    return Met(n, first, depth)
 
 
 @kernel

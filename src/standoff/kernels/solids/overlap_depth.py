@@ -15,6 +15,9 @@ MOST_PUSHES = 2
 MOST_TRIED = 8
 # Of what is the most that can be proven: no more is looked for.
 ENOUGH = 0.5
+# And of that, as depths are proven to a tenth: where a place's points prove so much, a ball can
+# hardly prove more.
+PLENTY = 0.85
 # Of half the depth: a larger ball is not looked for.
 BALL = 0.1
 
@@ -26,14 +29,6 @@ class Two(NamedTuple):
     b: Any
     pose: Any
     probe: Any
-
-
-class Ball(NamedTuple):
-    """A ball in A's frame, and the depth that it proves."""
-
-    middle: Any
-    radius: Any
-    depth: Any
 
 
 @kernel
@@ -65,10 +60,10 @@ def away_from(x, nearest, depth):
 
 
 @kernel
-def ball_inside(two, middle, about):
-    """A ball that is proven to be inside both solids, around a point in A's frame, or one that both
-    boundaries are farther from, and what it proves; a radius of 0: none was found."""
-    ball = Ball(middle, 0.0, 0.0)
+def ball_depth(two, middle, about):
+    """The same by a ball that is proven to be inside both solids, around a point in A's frame, or
+    one that both boundaries are farther from; 0: none was found."""
+    radius, depth = 0.0, 0.0
     for _ in range(MOST_PUSHES):
         side, low, nearest = depth_beside(two.a, middle, about, two.probe)
         in_a, way_a = -side * low, away_from(middle, nearest, -side * low)
@@ -76,13 +71,13 @@ def ball_inside(two, middle, about):
         side, low, nearest = depth_beside(two.b, own, about, two.probe)
         deep, way = -side * low, rotate(two.pose.R, away_from(own, nearest, -side * low))
         least = min(in_a, deep)
-        if least > ball.radius:
-            ball = Ball(middle, least, in_a + deep)
+        if least > radius:
+            radius, depth = least, in_a + deep
         if least >= BALL * about:
             break
         middle = add(middle, scale(max(about - in_a, 0.0), way_a))
         middle = add(middle, scale(max(about - deep, 0.0), way))
-    return ball
+    return depth
 
 
 @kernel
@@ -107,8 +102,7 @@ def depth_at(two, found, k, enough):
     x, y = points_of(minima, MINIMUM_REALS * int(sets[s + SET_ROW]))
     depth = least_depth(two, x, y, about)
     if depth <= enough:
-        middle = middle_of(minima, count, number)
-        depth = max(depth, ball_inside(two, middle, 0.5 * about).depth)
+        depth = max(depth, ball_depth(two, middle_of(minima, count, number), 0.5 * about))
     tried = 0
     for i in range(count):
         o = MINIMUM_REALS * i

@@ -80,7 +80,7 @@ def told_in_contact(
     pair: PlacedPair,
     signed: SignedMinima,
     felt: NDArray[np.bool_],
-    overlap: Overlap,
+    proven: float,
     sought: Sought,
     minima: float | None,
 ) -> SolidProximity:
@@ -91,13 +91,16 @@ def told_in_contact(
     ----------
     felt : (m,) array of bool
         Of each minimum, has it come from above 0?
-    overlap : Overlap
-        What is proven at the deepest of these.
+    proven : float
+        No translation shorter than this parts the solids, length.
     minima : float or None
         As of `told_overlapping`; places that are not felt are told last.
     """
     depth = signed.sets[:, 0]
     rows = list(signed.sets[felt & (depth < 0.0)][:MOST_REGIONS])
+    ball = ball_of(pair, signed, rows[0])
+    # a smaller ball is inside both too, and its radius is told to be half the depth at most
+    overlap = Overlap(ball.common_point, min(ball.radius, 0.5 * proven), proven)
     if minima is None:
         return _told(pair, signed, overlap, rows[:1], sought)[0]
     rows += list(signed.sets[(depth >= 0.0) & (depth <= minima)])

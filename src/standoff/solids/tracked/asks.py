@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.kernels.entries import solid_blocks as B
 from standoff.motion import Pose
-from standoff.solids.answer import Overlap, SolidProximity
+from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
 from standoff.solids.spatial.distance import (
     reach_of_minima,
@@ -142,11 +142,8 @@ class Asks(NamedTuple):
 
     def in_contact(self, pair: PlacedPair, places: Places) -> SolidProximity:
         """The answer of a frame of a contact."""
-        middle = pair.ra @ places.middle + pair.pa
-        overlap = Overlap(middle, places.radius, places.depth)
         reach = contact_reach(pair, self.sought(pair))
-        found = places.signed, places.felt, overlap
-        return told_in_contact(pair, *found, reach, self.options.minima)
+        return told_in_contact(pair, *places, reach, self.options.minima)
 
     def apart(
         self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float

@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 from standoff.kernels.entries.solid_contact import (
     DEPTH,
     FIRST,
-    MIDDLE,
     N_PLACES,
-    RADIUS,
     TOLD_REALS,
     follow_contact,
 )
@@ -45,16 +43,11 @@ class Places(NamedTuple):
     ----------
     signed : the minima of the signed distance.
     felt : (m,) array of bool: has each come from above 0?
-    middle : (3,) array, A's frame
-        Of a ball that is inside both solids.
-    radius : of that ball; 0: none was found.
     depth : no translation shorter than this parts the solids.
     """
 
     signed: SignedMinima
     felt: NDArray[np.bool_]
-    middle: Array
-    radius: float
     depth: float
 
 
@@ -151,8 +144,7 @@ class ContactFrames:
         sets = room[AT_SETS : AT_SETS + SET_REALS * n]
         signed = signed_told(room, room[AT_NORMALS:AT_SETS], sets, self.work.counts)
         rows = kept[P.F_AT : P.F_AT + P.PLACE_REALS * n].reshape(-1, P.PLACE_REALS)
-        ball = told[MIDDLE : MIDDLE + 3].copy(), float(told[RADIUS])
-        return Places(signed, rows[:, P.P_FELT] > 0.0, *ball, float(told[DEPTH]))
+        return Places(signed, rows[:, P.P_FELT] > 0.0, float(told[DEPTH]))
 
     def merged(self) -> NDArray[np.int64]:
         """Of the last frame, as `Frames.merged` of the front."""

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from standoff.errors import StandoffError
 from standoff.kernels.entries import tracked_solids as T
 from standoff.kernels.entries.solid_contact import (
+    ALONG,
     AT_BOTH,
     DEPTH,
     DISTANCE,
     FIRST,
-    MIDDLE,
     follow_contact,
 )
 from standoff.kernels.state.arrays import BAD_POSE_A
@@ -77,7 +77,7 @@ class SolidFrameBuffer:
         self._contact: ContactFrames | None = None
         self._call: tuple[Any, ...] = ()
         self._room_of_contact = new_contact_room()
-        pressed = self._room_of_contact.told[AT_BOTH:MIDDLE].reshape(3, 3)
+        pressed = self._room_of_contact.told[AT_BOTH : ALONG + 3].reshape(3, 3)
         self._pressed_at, self._pressed_along = pressed[:2], pressed[2]
         self._load(state.front, state.born)
         self._tell(state.proximity)
