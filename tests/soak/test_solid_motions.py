@@ -47,7 +47,7 @@ def test_a_long_motion_is_judged(deadline: int | None) -> None:
 
 @pytest.mark.parametrize("deadline", [None, 40])
 def test_leaps_are_judged_and_repeated(deadline: int | None) -> None:
-    verdict, lines = judged_leaps(1, 2, PAIR, deadline)
+    verdict, lines = judged_leaps(0, 2, PAIR, deadline)
     assert lines == []
     assert verdict.sound
     assert verdict.frames == 30
@@ -55,16 +55,16 @@ def test_leaps_are_judged_and_repeated(deadline: int | None) -> None:
     assert verdict.leaps > 5
     assert verdict.statuses["OVERLAPPING"] > 0
     assert ("DEADLINE" in verdict.statuses) == (deadline is not None)
-    again = judged_leaps(1, 2, PAIR, deadline)[0]
+    again = judged_leaps(0, 2, PAIR, deadline)[0]
     assert replace(again, seconds=0.0) == replace(verdict, seconds=0.0)
 
 
 def test_an_interval_under_a_budget_must_be_true(monkeypatch: pytest.MonkeyPatch) -> None:
     raised(monkeypatch, "step", beyond)
-    verdict, lines = judged_leaps(1, 2, PAIR, 40)
+    verdict, lines = judged_leaps(0, 2, PAIR, 40)
     assert verdict.wrong > 0
     assert not verdict.sound
-    assert "seed 2, block 1, bolt" in lines[0]
+    assert "seed 2, block 0, bolt" in lines[0]
 
 
 def test_a_frame_in_place_that_differs_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -76,6 +76,6 @@ def test_a_frame_in_place_that_differs_is_seen(monkeypatch: pytest.MonkeyPatch) 
         return distance
 
     monkeypatch.setattr(SolidFrameBuffer, "step", off)
-    verdict, _ = judged_leaps(1, 2, PAIR)
+    verdict, _ = judged_leaps(0, 2, PAIR)
     assert verdict.otherwise > 0
     assert not verdict.sound

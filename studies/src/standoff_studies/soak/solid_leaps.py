@@ -102,6 +102,10 @@ class Leaps:
         pose[:3, :3], pose[:3, 3] = self.turn, self.middle - self.turn @ self.centre
         return pose
 
+    def come_near(self, answer: SolidProximity) -> None:
+        """From a first answer to where the motion begins."""
+        self.middle = self.middle - (answer.distance - FAR * self.size) * np.asarray(answer.normal)
+
     def leap(self, answer: SolidProximity) -> float:
         """Go on from the answer before; how far, length."""
         if self.done % HELD == 0:
@@ -139,6 +143,7 @@ def judged_leaps(
     leaps, verdict, lines = Leaps(a, b, rng), Verdict(), []
     below = MINIMA_BELOW * leaps.size if rng.random() < KEEPING else None
     tracker = SolidTracker(a, b, minima=below, **budget(deadline))
+    leaps.come_near(tracker.start(STILL, leaps.pose).proximity)
     state = tracker.start(STILL, leaps.pose)
     buffer = tracker.buffer(state)
     for _ in range(BLOCK):
