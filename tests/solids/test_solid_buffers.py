@@ -12,7 +12,9 @@ from test_tracked_solids import wandering
 
 import standoff as so
 from families.solid_shapes import bolt, bracket, tube
+from standoff.kernels.entries.solid_contact import FIRST, follow_contact
 from standoff.solids import SolidFrameBuffer, SolidProximity
+from standoff.solids.tracked import contact, frame_buffer
 from standoff.tracking.status import Status
 
 Array = np.ndarray
@@ -78,6 +80,41 @@ def test_through_contact_and_ties(asked: dict[str, float], tilt: tuple[Any, Any,
     assert (Status.CONTINUUM in met) == (tilt == (0.0, 0.0, 0.0))
 
 
+ASKED = [{}, {"minima": 0.2}, {"deadline": 300}, {"minima": 0.2, "patch": 1e-3, "deadline": 3000}]
+
+
+@pytest.mark.parametrize("asked", ASKED)
+@pytest.mark.parametrize("tilt", [(0.02, 0.03, 0.0), (0.0, 0.0, 0.0)])
+def test_in_and_out_of_overlap(asked: dict[str, Any], tilt: tuple[float, float, float]) -> None:
+    """Apart, touching where level, many frames in overlap, and out again; answers are read in some
+    frames only, and buffers begin in any of them."""
+    lid, pad = so.Solid(so.shapes.box((4, 4, 1))), so.shapes.box((1, 1, 1))
+    heights = 1.0 + np.concatenate([np.arange(12, -9, -1), np.arange(-7, 13)]) / 256.0
+    assert 1.0 in heights
+    poses = carried(down(tuple(heights), tilt))
+    tracker = so.Tracker(lid, pad, **asked)
+    state = tracker.start(A, poses[0])
+    seldom, always = tracker.buffer(state), tracker.buffer(state)
+    met: list[Status] = []
+    for k, pose in enumerate(poses):
+        begun = tracker.buffer(always.state)
+        state, answer = tracker.step(state, A, pose)
+        for buffer in (seldom, always, begun):
+            assert tracker.step_into(buffer, A.matrix, pose) == answer.distance
+            assert buffer.status is answer.status
+        is_same(always, answer)
+        if k % 5 == 4:
+            is_same(seldom, answer)
+            is_same(begun, answer)
+        met.append(answer.status)
+    overlaps = [k for k, status in enumerate(met) if status is Status.OVERLAPPING]
+    assert len(overlaps) > 8
+    assert overlaps[0] > 0
+    assert overlaps[-1] < len(met) - 1
+    if tilt == (0.0, 0.0, 0.0):
+        assert Status.TOUCHING in met
+
+
 def test_a_leap_into_the_other_solid() -> None:
     """Farther in one frame than they were apart: into the material, and out again."""
     block, ball = so.Solid(so.shapes.box((4, 4, 4))), so.shapes.sphere(0.3)
@@ -92,6 +129,38 @@ def test_a_leap_into_the_other_solid() -> None:
         assert buffer.distance == answer.distance
         met.append(answer.status.name)
     assert met == ["CONVERGED", "CONTAINED", "CONTAINED", "CONVERGED"]
+
+
+@pytest.mark.parametrize("asked", [{}, {"minima": 0.2}])
+def test_places_that_prove_nothing(asked: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A frame in overlap that the places kept do not prove is looked at as one of which nothing is
+    known, in place as in a step."""
+    refusing = [False]
+
+    def refused(*given: Any) -> None:
+        follow_contact(*given)
+        if refusing.pop():
+            given[4][5][FIRST] = -1.0
+        refusing.append(False)
+
+    for module in (contact, frame_buffer):
+        monkeypatch.setattr(module, "follow_contact", refused)
+    lid, pad = so.Solid(so.shapes.box((4, 4, 1))), so.shapes.box((1, 1, 1))
+    poses = carried(down(tuple(np.linspace(1.03, 0.96, 16)), (0.02, 0.03, 0.0)))
+    tracker = so.Tracker(lid, pad, **asked)
+    state = tracker.start(A, poses[0])
+    buffer, seen = tracker.buffer(state), 0
+    for k, pose in enumerate(poses):
+        again = state.proximity.overlap is not None and k % 3 == 0
+        seen += again
+        refusing[0] = again
+        state, answer = tracker.step(state, A, pose)
+        refusing[0] = again
+        tracker.step_into(buffer, A, pose)
+        is_same(buffer, answer)
+        if again:
+            assert answer.status is Status.OVERLAPPING
+    assert seen > 2
 
 
 def test_poses_are_read_in_every_form() -> None:

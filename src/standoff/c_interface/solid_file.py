@@ -10,13 +10,11 @@ from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.kernels.entries import solid_blocks as B
-from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.pair import references_of
 from standoff.solids.spatial.points import POINT
 from standoff.solids.spatial.sides import vertex_normals_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
-from standoff.solids.spatial.tolerances import CONTACT_REACH, PROOF_ROUNDING, PROOF_TOLERANCE
 from standoff.solids.tracked.tracker import SolidTracker
 
 Array = NDArray[Any]
@@ -30,25 +28,13 @@ def arrays_of(tracker: SolidTracker) -> list[Array]:
     made: list[Array] = []
     for solid in solids:
         made += [*solid.packed, *fans_of(solid), vertex_normals_of(solid), references_of(solid)]
-    made += [*POINT, _asked(tracker), *(_leaves(solid) for solid in solids)]
+    made += [*POINT, tracker.asks.numbers, *(_leaves(solid) for solid in solids)]
     return [np.ravel(each) for each in made]
 
 
 def header_of(tracker: SolidTracker, lengths: list[int]) -> bytes:
     """What stands before the arrays."""
     return struct.pack(f"<{B.N_TABLED}qd", *lengths, tracker.dt)
-
-
-def _asked(tracker: SolidTracker) -> Array:
-    """What is asked of each frame."""
-    a, b, asks = tracker.a, tracker.b, tracker.asks
-    minima, found = asks.minima, np.empty(B.N_ASKED)
-    found[B.Q_FRAME : B.Q_DEADLINE] = asks.proof, PROOF_ROUNDING, minima.above, minima.wider
-    found[B.Q_DEADLINE], found[B.Q_IN_TIME] = tracker.deadline, asks.in_time().options.deadline
-    found[B.Q_SIZE_A], found[B.Q_SIZE_B], found[B.Q_SLACK] = a.size, b.size, a.slack + b.slack
-    found[B.Q_DEEP], found[B.Q_PROOF] = CONTACT_REACH, PROOF_TOLERANCE
-    found[B.Q_POINTS] = DEADLINE
-    return found
 
 
 def _leaves(solid: SolidModel) -> Array:

@@ -96,7 +96,7 @@ def prepare_tracked_solids() -> None:
     ]
     needed += [minima.span_patches, solid_contact.follow_contact, solid_contact.signed_minima]
     needed += [solid_contact.pieces_parted, solid_points.point_depth]
-    needed += [solid_points.side_beside, solid_points.outward_at, solid_points.place_depth]
+    needed += [solid_points.side_beside, solid_points.outward_at]
     _prepare_each(needed)
 
 

@@ -1,22 +1,52 @@
 """Local minima of the signed distance of two solids, as Python calls what finds them."""
 
-from math import inf
-
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, pointer
+from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer
 from standoff.kernels.compiler.entry import READ, WRITE, WRITE_INTS
 from standoff.kernels.entries.minima import BOTH_FANS, fans_at
-from standoff.kernels.entries.solids import SOLIDS, STILL, side_at
+from standoff.kernels.entries.solid_blocks import Q_FRAME, Q_POINTS, Q_PROOF, Q_SIZE_A, Q_SIZE_B
+from standoff.kernels.entries.solid_meeting import go_on_from, meet_at, pressed
+from standoff.kernels.entries.solid_points import BESIDE, heap_and_space
+from standoff.kernels.entries.solids import ROOM, SOLIDS, STILL, side_at
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.contact_frame import Choices, contact_frame
-from standoff.kernels.solids.contact_front import Both
-from standoff.kernels.solids.contact_places import MOST_ROWS
+from standoff.kernels.solids.contact_frame import AT_NORMALS, AT_SETS
 from standoff.kernels.solids.contact_proof import parts_pieces
 from standoff.kernels.solids.contact_search import search_signed
 from standoff.kernels.solids.contact_sets import gather_signed
+from standoff.kernels.solids.minima_sets import SET_REALS, SET_ROW
+from standoff.kernels.solids.overlap_depth import Two
 from standoff.kernels.solids.patch import span_all
-from standoff.kernels.solids.spatial_progress import LOST, N_MINIMA, NORMAL
+from standoff.kernels.solids.point_depth import Known, Probe
+from standoff.kernels.solids.spatial_progress import (
+    LOST,
+    MINIMUM_REALS,
+    N_MINIMA,
+    NORMAL,
+    POINTS,
+)
+
+# What is kept of a contact and a frame's room; of its front what a frame changes; and what is told.
+KEEPS = types.Tuple((WRITE, WRITE, WRITE, WRITE, WRITE, WRITE))
+# What a search for a point's depth fills, and its room.
+PROBING = types.Tuple((WRITE, WRITE, ROOM))
+# What a frame tells: how many places; the deepest that is felt, -1 where no overlap is proven; a
+# length that no translation is less than which parts the solids; and of that place the signed
+# distance, both points and the normal, A's frame.
+N_PLACES, FIRST, DEPTH, DISTANCE, AT_BOTH, ALONG = 0, 1, 2, 3, 4, 10
+TOLD_REALS = 13
+
+
+@kernel
+def tell_met(met, row, room, told):
+    """`row`: of a set of minima, that of the deepest place which is felt."""
+    o = AT_NORMALS + MINIMUM_REALS * int(row[SET_ROW])
+    told[DISTANCE], told[DEPTH] = row[0], met.depth
+    for k in range(6):
+        told[AT_BOTH + k] = room[o + POINTS + k]
+    for k in range(3):
+        told[ALONG + k] = room[o + NORMAL + k]
+
 
 # As a search has them, and what sets of minima are written to.
 LISTS = types.Tuple((WRITE, WRITE, WRITE))
@@ -41,18 +71,32 @@ def signed_minima(solids, pose, fans, lists, asked, stack, counts):
     return n
 
 
-@entry(SOLIDS, READ, BOTH_FANS, WRITE, WRITE, READ, WRITE_INTS, work="solids")
-def follow_contact(solids, pose, fans, kept, room, asked, counts):
-    """A frame of a contact that is kept, B at a pose in A's frame, in `room`, which begins with
-    what is asked: how many places there are. `asked`: as `signed_minima`."""
-    a, b = side_at(solids[0], STILL, S.PRESSED), side_at(solids[1], pose, S.PRESSED)
-    c = pointer(counts, 0)
-    for k in range(len(counts)):
-        c[k] = 0
-    both = Both(a, b, (fans_at(fans[0]), fans_at(fans[1])))
-    # poses of a track may be far from each other: all pairs of leaves are tried in each frame
-    choices = Choices(inf, asked[0], 1, MOST_ROWS)
-    return contact_frame(both, pointer(kept, 0), choices, pointer(room, 0), c)
+@entry(SOLIDS, READ, BESIDE, BOTH_FANS, KEEPS, READ, PROBING, WRITE_INTS, work="solids")
+def follow_contact(solids, pose, beside, fans, keeps, asked, probing, counts):
+    """A frame of a contact that is kept, B at a pose in A's frame, and the front after it where the
+    solids are proven to overlap. `asked`: as of a block; `counts`: of the frame, then from the 8th
+    on of its proof."""
+    kept, room, told = pointer(keeps[0], 0), pointer(keeps[1], 0), keeps[5]
+    best, ties, work = probing
+    heap, space = heap_and_space(work)
+    lists, count = (pointer(best, 0), pointer(ties, 0)), pointer(counts, 0)
+    wanted = pointer(asked, 0)
+    probe = Probe(
+        side_at(beside[0], STILL, S.EITHER), asked[Q_FRAME + 1], asked[Q_PROOF], asked[Q_POINTS],
+        lists, heap, space, ahead(count, 8),
+    )  # fmt: skip
+    at_a, at_b = pointer(beside[1], 0), pointer(beside[2], 0)
+    a = Known(side_at(solids[0], STILL, S.OUTSIDE), at_a, at_a, 0, asked[Q_SIZE_A])
+    b = Known(side_at(solids[1], STILL, S.OUTSIDE), at_b, at_b, 0, asked[Q_SIZE_B])
+    two = Two(a, b, side_at(solids[1], pose, S.OUTSIDE).pose, probe)
+    both = pressed(two, (fans_at(fans[0]), fans_at(fans[1])))
+    met = meet_at(two, both, kept, wanted, room, count)
+    told[N_PLACES], told[FIRST] = met.n, met.first
+    if met.first >= 0:
+        row = ahead(room, AT_SETS + SET_REALS * met.first)
+        front = pointer(keeps[2], 0), pointer(keeps[3], 0), pointer(keeps[4], 0)
+        go_on_from(kept, row, front)
+        tell_met(met, row, room, pointer(told, 0))
 
 
 @entry(SOLIDS, READ, READ, types.Tuple((WRITE, WRITE)), WRITE_INTS, work="solids")

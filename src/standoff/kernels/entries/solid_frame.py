@@ -6,22 +6,16 @@ were apart by their front; where that does not answer the frame, the places do, 
 those are felt that have come from above 0; and else a start from nothing.
 """
 
-from math import inf
-
 from standoff.kernels.algebra.vectors import norm
 from standoff.kernels.compiler.decorators import ahead, kernel, shared
 from standoff.kernels.entries import solid_blocks as B
 from standoff.kernels.entries import tracked_solids as T
 from standoff.kernels.entries.solid_answers import tell_apart, tell_overlap, tell_unproven
+from standoff.kernels.entries.solid_meeting import ask_places, go_on_from, meet_at, pressed
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_frame import (
-    AT_NORMALS,
     AT_SETS,
-    MOST_NORMALS,
-    Choices,
-    contact_frame,
 )
-from standoff.kernels.solids.contact_front import Both
 from standoff.kernels.solids.contact_places import (
     F_BRANCHES,
     F_MADE,
@@ -29,12 +23,7 @@ from standoff.kernels.solids.contact_places import (
     F_ROWS,
     F_STORE,
     MOST_PLACES,
-    MOST_ROWS,
-    P_FELT,
-    SPOT,
-    place_at,
 )
-from standoff.kernels.solids.contact_sets import NO_MINIMUM
 from standoff.kernels.solids.front_branches import BRANCH_REALS
 from standoff.kernels.solids.front_rows import (
     N_BRANCHES,
@@ -44,18 +33,15 @@ from standoff.kernels.solids.front_rows import (
     Front,
 )
 from standoff.kernels.solids.minima_sets import SET_REALS
-from standoff.kernels.solids.overlap_depth import Two, depth_at
-from standoff.kernels.solids.point_depth import MOST_TIES, ask_search, which_is_inside
+from standoff.kernels.solids.overlap_depth import Two
+from standoff.kernels.solids.point_depth import MOST_TIES, which_is_inside
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
-    BOUND,
     BUDGET,
     LEAF_A,
     LEAST,
     MET,
-    MINIMUM_REALS,
     MOST_MINIMA,
-    N_MINIMA,
     OPEN,
     TOLERANCE,
 )
@@ -147,67 +133,28 @@ def begin_contact(s, kept):
 
 
 @kernel
-def ask_places(g, best):
-    """What is asked of a frame of a contact."""
-    x, size, away = g.asked, g.a.size + g.b.size, norm(g.pose.p)
-    rounding = x[B.Q_FRAME + 1]
-    tolerance = max(x[B.Q_FRAME], 4.0 * rounding * (size + away))
-    ask_search(best, size, away, rounding, tolerance, x[B.Q_DEADLINE])
-    best[ABOVE] = max(x[B.Q_FRAME + 2], x[B.Q_DEEP] * size + x[B.Q_FRAME + 3])
-    best[MOST_MINIMA] = MOST_NORMALS
-
-
-@kernel
-def unmark(best, minima):
-    """Common normals that are felt as spots have their minimum's number again."""
-    for k in range(int(best[N_MINIMA])):
-        o = MINIMUM_REALS * k + BOUND
-        if minima[o] < NO_MINIMUM:
-            minima[o] = SPOT - minima[o]
-
-
-@kernel
-def go_on_from(g, kept, sets, first):
-    """The front after a frame of contact: its rows stay as they are, the branches are those of the
-    contact, and the witness points those of a set of minima."""
-    s = g.block
-    for k in range(6):
-        s[B.BEST + LEAF_A + k] = sets[SET_REALS * first + 1 + k]
-    s[B.STORE + N_BRANCHES] = kept[F_STORE + N_BRANCHES]
-    s[B.STORE + NEXT_BRANCH] = kept[F_STORE + NEXT_BRANCH]
-    for k in range(BRANCH_REALS * int(kept[F_STORE + N_BRANCHES])):
-        s[B.BRANCHES + k] = kept[F_BRANCHES + k]
-    s[B.MODE], s[B.OVERLAPPED] = B.IN_CONTACT, 1.0
-
-
-@kernel
 def meet(g):
     """A frame of a contact; is it proven that the solids overlap?"""
     s = g.block
     kept, room = ahead(s, B.CONTACT), ahead(s, B.W_ROOM)
     if s[B.MODE] != B.IN_CONTACT:
         begin_contact(s, kept)
-    ask_places(g, room)
-    for k in range(8):
-        g.counts[k] = 0
-    a = B.seen_at(g.a, B.unmoved(), S.PRESSED)
-    both = Both(a, B.seen_at(g.b, g.pose, S.PRESSED), g.fans)
-    choices = Choices(inf, g.asked[B.Q_FRAME + 3], 1, MOST_ROWS)
-    n = contact_frame(both, kept, choices, room, g.counts)
-    minima, sets = ahead(room, AT_NORMALS), ahead(room, AT_SETS)
-    unmark(room, minima)
-    first, depth = -1, -inf
-    for k in range(n):
-        if sets[SET_REALS * k] < 0.0 and kept[place_at(k) + P_FELT] > 0.0:
-            first = k if first < 0 else first
-            if depth <= room[TOLERANCE]:
-                two = Two(g.a, g.b, g.pose, g.probe)
-                depth = depth_at(two, (room, minima, sets), k, room[TOLERANCE])
-    if first < 0 or depth <= room[TOLERANCE]:
+    two = Two(g.a, g.b, g.pose, g.probe)
+    both = pressed(two, g.fans)
+    met = meet_at(two, both, kept, g.asked, room, g.counts)
+    if met.first < 0:
         return False
-    tell_overlap(g, both, n, first, depth)
-    go_on_from(g, kept, sets, first)
+    tell_overlap(g, both, met.n, met.first, met.depth)
+    front = ahead(s, B.BEST), ahead(s, B.STORE), ahead(s, B.BRANCHES)
+    go_on_from(kept, ahead(room, AT_SETS + SET_REALS * met.first), front)
+    s[B.MODE], s[B.OVERLAPPED] = B.IN_CONTACT, 1.0
     return True
+
+
+@kernel
+def ask_nearest(g, best):
+    """What is asked of a search from nothing, but for its evaluations and minima."""
+    ask_places(g.asked, g.a.size + g.b.size, norm(g.pose.p), best)
 
 
 @kernel
@@ -217,7 +164,7 @@ def new_front(g, found):
     least, low = found[LEAST], min(found[LEAST] - found[TOLERANCE], found[OPEN])
     for k in range(6):
         s[B.ANSWER + k] = found[LEAF_A + k]
-    ask_places(g, best)
+    ask_nearest(g, best)
     best[ABOVE] = g.asked[B.Q_FRAME + 2]
     best[MOST_MINIMA] = B.MOST_LOCAL if best[ABOVE] > 0.0 else MOST_TIES
     for k in range(6):
@@ -239,7 +186,7 @@ def from_nothing(g, deadline):
     put_inside(s, inside)
     a, b = boundaries(g, g.pose)
     best, ties = g.probe.lists
-    ask_places(g, best)
+    ask_nearest(g, best)
     best[ABOVE], best[BUDGET], best[MOST_MINIMA] = 0.0, deadline, MOST_TIES
     for k in range(8):
         g.counts[k] = 0
@@ -256,7 +203,7 @@ def from_nothing(g, deadline):
     if meet(g):
         return
     # the proof has written over what the search has found
-    ask_places(g, best)
+    ask_nearest(g, best)
     best[ABOVE], best[BUDGET], best[MOST_MINIMA] = 0.0, deadline, MOST_TIES
     search(a, b, best, ties, g.probe.heap, g.probe.space, g.counts)
     tell_unproven(g, best, a, b)

@@ -1,13 +1,11 @@
-"""Points and solids, as Python calls them: on which side of a boundary, how deep inside,
-and how deep an overlap is."""
+"""Points and solids, as Python calls them: on which side of a boundary, and how deep inside."""
 
 from numba import types
 
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, READ, READ_ROWS, REAL, WRITE, WRITE_INTS
-from standoff.kernels.entries.solids import CLOSING, ROOM, SOLID, SOLIDS, STILL, side_at
+from standoff.kernels.entries.solids import CLOSING, ROOM, SOLID, STILL, side_at
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.overlap_depth import Two, depth_at
 from standoff.kernels.solids.point_depth import (
     Known,
     Probe,
@@ -16,7 +14,6 @@ from standoff.kernels.solids.point_depth import (
     seen_from,
     side_by,
 )
-from standoff.kernels.solids.spatial_progress import N_MINIMA
 
 
 @entry(SOLID, READ, INT, REAL, REAL, work="solids")
@@ -37,6 +34,10 @@ def side_beside(solid, normals, rows, point):
         if told == 0.0:
             told = side_by(seen, pointer(normals, 0), int(row[2]), row[5], row[6])
     return told
+
+
+# The origin as a solid, and the normals of both solids' vertices.
+BESIDE = types.Tuple((SOLID, READ, READ))
 
 
 @kernel
@@ -70,27 +71,3 @@ def point_depth(solid, point, normals, asked, lists, room, counts):
     out[0], out[1] = side, depth
     for k in range(3):
         out[2 + k] = nearest[k]
-
-
-# The origin as a solid, and the normals of both solids' vertices; rows of common normals, and the
-# set that is a minimum's.
-BESIDE = types.Tuple((SOLID, READ, READ))
-FOUND = types.Tuple((READ_ROWS, READ))
-
-
-@entry(SOLIDS, READ, BESIDE, FOUND, READ, LISTS, ROOM, WRITE_INTS, work="solids")
-def place_depth(solids, pose, beside, found, asked, lists, room, counts):
-    """`depth_at` of a minimum. asked: how deep is enough; the sizes of both solids; what bounds are
-    computed and proven to, of a size; and how many evaluations are allowed."""
-    rows, one = found
-    own = side_at(beside[0], STILL, S.EITHER)
-    work = heap_and_space(room)
-    filled = pointer(lists[0], 0), pointer(lists[1], 0)
-    probe = Probe(own, asked[3], asked[4], asked[5], filled, work[0], work[1], pointer(counts, 0))
-    at_a, at_b = pointer(beside[1], 0), pointer(beside[2], 0)
-    a = Known(side_at(solids[0], STILL, S.OUTSIDE), at_a, at_a, 0, asked[1])
-    b = Known(side_at(solids[1], STILL, S.OUTSIDE), at_b, at_b, 0, asked[2])
-    two = Two(a, b, side_at(solids[1], pose, S.OUTSIDE).pose, probe)
-    told = pointer(lists[2], 0)
-    told[N_MINIMA] = len(rows)
-    return depth_at(two, (told, pointer(rows, 0), pointer(one, 0)), 0, asked[0])

@@ -15,6 +15,9 @@ MOST_PUSHES = 2
 MOST_TRIED = 8
 # Of what is the most that can be proven: no more is looked for.
 ENOUGH = 0.5
+# And of that, as depths are proven to a tenth: where a place's points prove so much, a ball can
+# hardly prove more.
+PLENTY = 0.85
 # Of half the depth: a larger ball is not looked for.
 BALL = 0.1
 

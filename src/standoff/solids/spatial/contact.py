@@ -15,18 +15,15 @@ from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solid_contact import pieces_parted, signed_minima
-from standoff.kernels.entries.solid_points import place_depth
 from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, SET_ROW
 from standoff.kernels.solids.overlap_depth import BALL, ENOUGH, MOST_PUSHES
 from standoff.solids.answer import Overlap
-from standoff.solids.asked import DEADLINE
-from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, scratch, started
+from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, started
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.points import POINT, depth_beside
-from standoff.solids.spatial.sides import vertex_normals_of
+from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.stationary import fans_of
-from standoff.solids.spatial.tolerances import LEAST_LENGTH, PROOF_ROUNDING, PROOF_TOLERANCE
+from standoff.solids.spatial.tolerances import LEAST_LENGTH
 
 MOST_REGIONS = 64
 """Minima below 0 that are looked at."""
@@ -128,43 +125,6 @@ def regions_of(pair: PlacedPair, found: SignedMinima, tolerance: float) -> list[
         if depth > tolerance:
             told.append(Region(row, place, depth))
     return told[::-1]
-
-
-def felt_regions(
-    pair: PlacedPair, found: SignedMinima, felt: NDArray[np.bool_], tolerance: float
-) -> list[Region]:
-    """The places of overlap that have come from above 0, the deepest first; none where none of them
-    proves that the solids overlap. What is proven of more than one is left open."""
-    told: list[Region] = []
-    proven = False
-    for row in found.sets[felt & (found.sets[:, 0] < 0.0)][:MOST_REGIONS]:
-        place = place_of(pair, found, row)
-        depth = -np.inf if proven else depth_at(pair, found, row, tolerance)
-        proven = proven or depth > tolerance
-        told.append(Region(row, place, depth))
-    return told if proven else []
-
-
-def depth_at(pair: PlacedPair, found: SignedMinima, row: Array, enough: float) -> float:
-    """As `least_depth`, by a minimum's place; where that is at the side of what overlaps, as of
-    faces that lie on each other, by a ball or by other pairs of points of the same minimum. Up to
-    what is enough."""
-    solids, packed = (pair.a, pair.b), (pair.a.packed, pair.b.packed)
-    best, minima = started(Sought(0.0), pair.size, 0.0)
-    normals = tuple(vertex_normals_of(solid).ravel() for solid in solids)
-    asked = [enough, pair.a.size, pair.b.size, PROOF_ROUNDING, PROOF_TOLERANCE, DEADLINE]
-    return float(
-        place_depth(
-            packed,
-            pair.relative,
-            (POINT, *normals),
-            (found.rows, row),
-            np.array(asked),
-            (best, minima, np.zeros(C.BEST_REALS)),
-            scratch(threading.get_ident()),
-            np.zeros(8, dtype=np.int64),
-        )
-    )
 
 
 def least_depth(pair: PlacedPair, place: Place) -> float:

@@ -88,6 +88,11 @@ class Found:
 @lru_cache(maxsize=8)
 def scratch(thread: int) -> tuple[Array, Any, Array]:
     del thread
+    return new_scratch()
+
+
+def new_scratch() -> tuple[Array, Any, Array]:
+    """A search's room for one who keeps it."""
     return np.empty(2048 + 3 * PAIRS), np.empty(2 * HEAP, dtype=np.int64), np.empty(HEAP)
 
 

@@ -14,11 +14,11 @@ from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.solids.answer import Overlap, SolidProximity
 from standoff.solids.parting import least_way_out
 from standoff.solids.spatial.contact import (
+    MOST_REGIONS,
     Region,
     SignedMinima,
     ball_of,
     bound_of,
-    felt_regions,
     place_of,
     regions_of,
 )
@@ -80,33 +80,36 @@ def told_in_contact(
     pair: PlacedPair,
     signed: SignedMinima,
     felt: NDArray[np.bool_],
+    proven: float,
     sought: Sought,
     minima: float | None,
-) -> Answered | None:
-    """The answer of a frame by the places that are followed; None where none that is felt proves
-    that the solids overlap.
+) -> SolidProximity:
+    """The answer of a frame by the places that are followed, of which one that is felt proves that
+    the solids overlap.
 
     Parameters
     ----------
     felt : (m,) array of bool
         Of each minimum, has it come from above 0?
+    proven : float
+        No translation shorter than this parts the solids, length.
     minima : float or None
         As of `told_overlapping`; places that are not felt are told last.
     """
-    regions = felt_regions(pair, signed, felt, sought.tolerance)
-    if not regions:
-        return None
-    rows = [region.row for region in regions]
-    if minima is None:
-        return _told(pair, signed, _overlap(pair, signed, regions), rows[:1], sought)
     depth = signed.sets[:, 0]
+    rows = list(signed.sets[felt & (depth < 0.0)][:MOST_REGIONS])
+    ball = ball_of(pair, signed, rows[0])
+    # a smaller ball is inside both too, and its radius is told to be half the depth at most
+    overlap = Overlap(ball.common_point, min(ball.radius, 0.5 * proven), proven)
+    if minima is None:
+        return _told(pair, signed, overlap, rows[:1], sought)[0]
     rows += list(signed.sets[(depth >= 0.0) & (depth <= minima)])
     ways = list(signed.sets[~felt & (depth < 0.0)])
-    answer, places = _told(pair, signed, _overlap(pair, signed, regions), rows + ways, sought)
+    answer, _ = _told(pair, signed, overlap, rows + ways, sought)
     named = zip(answer.minima, rows + ways, strict=True)
     told = [m._replace(key=int(row[SET_BRANCH])) for m, row in named]
     told[len(rows) :] = [m._replace(felt=False) for m in told[len(rows) :]]
-    return replace(answer, minima=tuple(told)), places
+    return replace(answer, minima=tuple(told))
 
 
 def _overlap(pair: PlacedPair, signed: SignedMinima, regions: Sequence[Region]) -> Overlap:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.kernels.entries import solid_blocks as B
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
 from standoff.solids.asked import DEADLINE, Asked
@@ -24,8 +25,14 @@ from standoff.solids.spatial.patches import rows_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.told import Inside
-from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
-from standoff.solids.tracked.contact import begun, followed, front_after, unknown
+from standoff.solids.spatial.tolerances import CONTACT_REACH, PROOF_ROUNDING, PROOF_TOLERANCE
+from standoff.solids.tracked.contact import (
+    ContactFrames,
+    ContactWork,
+    Places,
+    begun,
+    unknown,
+)
 from standoff.solids.tracked.front import (
     NO_MINIMA,
     Frames,
@@ -72,6 +79,18 @@ class Asks(NamedTuple):
         above = reach_of_minima(minima, patch)[0]
         return Minima(above, patch or 0.0, (fans_of(self.a), fans_of(self.b)))
 
+    @property
+    def numbers(self) -> Array:
+        """What compiled frames are asked, as ``kernels.entries.solid_blocks`` lays it out."""
+        a, b, minima, found = self.a, self.b, self.minima, np.empty(B.N_ASKED)
+        found[B.Q_FRAME : B.Q_DEADLINE] = self.proof, PROOF_ROUNDING, minima.above, minima.wider
+        found[B.Q_DEADLINE] = self.options.deadline
+        found[B.Q_IN_TIME] = self.in_time().options.deadline
+        found[B.Q_SIZE_A], found[B.Q_SIZE_B], found[B.Q_SLACK] = a.size, b.size, a.slack + b.slack
+        found[B.Q_DEEP], found[B.Q_PROOF] = CONTACT_REACH, PROOF_TOLERANCE
+        found[B.Q_POINTS] = DEADLINE
+        return found
+
     def frames(self, front: Front, room: Work | None = None) -> Frames:
         """Frames from a front on; `room`: arrays that nobody else writes to meanwhile."""
         packed = self.a.packed, self.b.packed
@@ -101,23 +120,30 @@ class Asks(NamedTuple):
         return answer, frames.kept()
 
     def met(
-        self, pair: PlacedPair, front: Front | None, born: int, before: Array | None
+        self, placed: tuple[PlacedPair, Array], front: Front | None, born: int, before: Array | None
     ) -> tuple[SolidProximity, Front, NDArray[np.int64]] | None:
         """The answer of a frame in which the solids overlap, the front after it, and which branches
-        have come to the place of another one; None where that is not proven. `before`: B's pose
-        (12,) in A's frame in the frame before, if they did not overlap in it."""
-        sought = self.sought(pair)
-        front = front or front_in_contact(pair, sought, born)
-        contact = front.contact
-        if contact is None:
+        have come to the place of another one; None where that is not proven. `placed`: both, and
+        B's pose (12,) in A's frame; `before`: that in the frame before, if they did not overlap in
+        it."""
+        pair, pose = placed
+        front = front or front_in_contact(pair, self.sought(pair), born)
+        if front.contact is None:
             contact = unknown(born) if before is None else begun(before, front)
-        reach = contact_reach(pair, sought)
-        places = followed(pair, reach, contact)
-        told = told_in_contact(pair, places.signed, places.felt, reach, self.options.minima)
-        if told is None:
+            front = front._replace(contact=contact)
+        frames = self.contact(front)
+        if not frames.go(pose):
             return None
-        answer, at = told
-        return answer, front_after(front, places.kept, at[0].row), places.merged
+        return self.in_contact(pair, frames.places()), frames.kept(), frames.merged()
+
+    def contact(self, front: Front, room: ContactWork | None = None) -> ContactFrames:
+        """Frames from a front with a contact on; `room`: as of `frames`."""
+        return ContactFrames((self.a, self.b), front, self.numbers, room)
+
+    def in_contact(self, pair: PlacedPair, places: Places) -> SolidProximity:
+        """The answer of a frame of a contact."""
+        reach = contact_reach(pair, self.sought(pair))
+        return told_in_contact(pair, *places, reach, self.options.minima)
 
     def apart(
         self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float

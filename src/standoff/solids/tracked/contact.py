@@ -10,28 +10,30 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels.entries.solid_contact import follow_contact
+from standoff.kernels.entries.solid_contact import (
+    DEPTH,
+    FIRST,
+    N_PLACES,
+    TOLD_REALS,
+    follow_contact,
+)
 from standoff.kernels.solids import contact_places as P
 from standoff.kernels.solids import spatial_progress as C
-from standoff.kernels.solids.contact_frame import (
-    AT_MERGED,
-    AT_NORMALS,
-    AT_SETS,
-    CONTACT_ROOM,
-    MOST_NORMALS,
-)
+from standoff.kernels.solids.contact_frame import AT_MERGED, AT_NORMALS, AT_SETS, CONTACT_ROOM
 from standoff.kernels.solids.contact_front import CONTACT_REALS
-from standoff.kernels.solids.contact_sets import NO_MINIMUM
 from standoff.kernels.solids.front_branches import BRANCH_REALS
-from standoff.kernels.solids.front_rows import N_BRANCHES, N_ROWS, NEXT_BRANCH
+from standoff.kernels.solids.front_rows import N_BRANCHES, N_ROWS, NEXT_BRANCH, STORE_REALS
 from standoff.kernels.solids.minima_sets import SET_REALS
 from standoff.solids.spatial.contact import SignedMinima, signed_told
-from standoff.solids.spatial.minimum import Sought, started
-from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.minimum import MOST_TIES, new_scratch
+from standoff.solids.spatial.points import POINT
+from standoff.solids.spatial.sides import vertex_normals_of
+from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
-from standoff.solids.tracked.front import Front, merged_of
+from standoff.solids.tracked.front import MOST_BRANCHES, Front, merged_of
 
 Array = NDArray[np.float64]
+N_COUNTS = 16
 
 
 class Places(NamedTuple):
@@ -41,21 +43,43 @@ class Places(NamedTuple):
     ----------
     signed : the minima of the signed distance.
     felt : (m,) array of bool: has each come from above 0?
-    kept : the contact after the frame.
-    merged : (n, 3) array of int
-        As `Frames.merged` of the front.
+    depth : no translation shorter than this parts the solids.
     """
 
     signed: SignedMinima
     felt: NDArray[np.bool_]
+    depth: float
+
+
+class ContactWork(NamedTuple):
+    """Arrays that frames of a contact write to."""
+
     kept: Array
-    merged: NDArray[np.int64]
+    room: Array
+    store: Array
+    branches: Array
+    told: Array
+    probe: tuple[Array, Array, Any]
+    counts: NDArray[np.int64]
+
+
+def new_contact_room() -> ContactWork:
+    """Arrays for one who keeps them from frame to frame."""
+    return ContactWork(
+        np.zeros(P.KEPT_REALS),
+        np.empty(CONTACT_ROOM),
+        np.zeros(STORE_REALS),
+        np.empty(BRANCH_REALS * MOST_BRANCHES),
+        np.zeros(TOLD_REALS),
+        (np.zeros(C.BEST_REALS), np.empty(C.MINIMUM_REALS * MOST_TIES), new_scratch()),
+        np.zeros(N_COUNTS, dtype=np.int64),
+    )
 
 
 @lru_cache(maxsize=8)
-def _room(thread: int) -> tuple[Array, Array]:
+def _room(thread: int) -> ContactWork:
     del thread
-    return np.zeros(P.KEPT_REALS), np.empty(CONTACT_ROOM)
+    return new_contact_room()
 
 
 def begun(before: Array, front: Front) -> Array:
@@ -79,38 +103,60 @@ def unknown(born: int) -> Array:
     return kept
 
 
-def front_after(front: Front, contact: Array, row: Array) -> Front:
-    """The front after a frame of contact, with points of both boundaries as a row of minima has
-    them: its rows stay as they are, and the branches are those of the contact."""
-    best, store = front.best.copy(), front.store.copy()
-    best[C.LEAF_A : C.AT + 4] = row[1:7]
-    own = contact[P.F_STORE :]
-    for k in (N_BRANCHES, NEXT_BRANCH):
-        store[k] = own[k]
-    n = BRANCH_REALS * int(own[N_BRANCHES])
-    branches = contact[P.F_BRANCHES : P.F_BRANCHES + n].copy()
-    for array in (best, store, branches):
-        array.flags.writeable = False
-    return front._replace(best=best, store=store, branches=branches, contact=contact)
+class ContactFrames:
+    """Frames of two solids that overlap, one after the other from a front with a contact on, which
+    stays as it is.
 
+    told : what the last one told, as ``kernels.entries.solid_contact`` lays it out.
+    """
 
-def followed(pair: PlacedPair, sought: Sought, contact: Array) -> Places:
-    """The frame after a contact, which stays as it is."""
-    kept, room = _room(threading.get_ident())
-    kept[: len(contact)] = contact
-    best, _ = started(sought, pair.size, float(np.linalg.norm(pair.relative[9:])))
-    room[: C.BEST_REALS] = best[: C.BEST_REALS]
-    room[C.MOST_MINIMA] = MOST_NORMALS
-    counts = np.zeros(8, dtype=np.int64)
-    solids: Any = (pair.a.packed, pair.b.packed), pair.relative
-    fans = fans_of(pair.a), fans_of(pair.b)
-    n = int(follow_contact(*solids, fans, kept, room, np.array([sought.patch]), counts))
-    rows = room[AT_NORMALS:AT_SETS]
-    signed = signed_told(room, rows, room[AT_SETS : AT_SETS + SET_REALS * n], counts)
-    bound = signed.rows[:, C.BOUND]
-    spots = bound < NO_MINIMUM
-    bound[spots] = P.SPOT - bound[spots]
-    felt = kept[P.F_AT : P.F_AT + P.PLACE_REALS * n].reshape(-1, P.PLACE_REALS)[:, P.P_FELT] > 0.0
-    after = kept[: P.F_ROWS + CONTACT_REALS * int(kept[P.F_STORE + N_ROWS])].copy()
-    after.flags.writeable = False
-    return Places(signed, felt, after, merged_of(kept[P.F_STORE :], room[AT_MERGED:]))
+    def __init__(
+        self, solids: tuple[SolidModel, SolidModel], front: Front, asked: Array,
+        room: ContactWork | None = None,
+    ) -> None:  # fmt: skip
+        assert front.contact is not None
+        a, b = solids
+        self.solids, self.fans, self.asked = (a.packed, b.packed), (fans_of(a), fans_of(b)), asked
+        self.beside = POINT, vertex_normals_of(a).ravel(), vertex_normals_of(b).ravel()
+        self.front, self.best = front, front.best.copy()
+        self.work = work = room or _room(threading.get_ident())
+        self.told = work.told
+        work.kept[: len(front.contact)] = front.contact
+        work.store[:] = front.store
+        work.branches[: len(front.branches)] = front.branches
+
+    def call(self, pose: Array) -> tuple[Any, ...]:
+        """What the kernel is called with for a frame with B at a pose (12,) in A's frame."""
+        work = self.work
+        kept = work.kept, work.room, self.best, work.store, work.branches, work.told
+        return (
+            self.solids, pose, self.beside, self.fans, kept, self.asked, work.probe, work.counts,
+        )  # fmt: skip
+
+    def go(self, pose: Array) -> bool:
+        """A frame with B at a pose (12,) in A's frame; is it proven that the solids overlap?"""
+        follow_contact(*self.call(pose))
+        return bool(self.told[FIRST] >= 0.0)
+
+    def places(self) -> Places:
+        """What the last frame found."""
+        kept, room, told, n = self.work.kept, self.work.room, self.told, int(self.told[N_PLACES])
+        sets = room[AT_SETS : AT_SETS + SET_REALS * n]
+        signed = signed_told(room, room[AT_NORMALS:AT_SETS], sets, self.work.counts)
+        rows = kept[P.F_AT : P.F_AT + P.PLACE_REALS * n].reshape(-1, P.PLACE_REALS)
+        return Places(signed, rows[:, P.P_FELT] > 0.0, float(told[DEPTH]))
+
+    def merged(self) -> NDArray[np.int64]:
+        """Of the last frame, as `Frames.merged` of the front."""
+        return merged_of(self.work.kept[P.F_STORE :], self.work.room[AT_MERGED:])
+
+    def kept(self) -> Front:
+        """The front after the last frame in which the solids overlap: its rows stay as they are,
+        and the branches are those of the contact."""
+        kept, store = self.work.kept, self.work.store.copy()
+        contact = kept[: P.F_ROWS + CONTACT_REALS * int(kept[P.F_STORE + N_ROWS])].copy()
+        branches = self.work.branches[: BRANCH_REALS * int(store[N_BRANCHES])].copy()
+        best = self.best.copy()
+        for array in (best, store, branches, contact):
+            array.flags.writeable = False
+        return self.front._replace(best=best, store=store, branches=branches, contact=contact)

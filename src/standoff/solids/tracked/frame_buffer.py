@@ -11,14 +11,24 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.entries import tracked_solids as T
+from standoff.kernels.entries.solid_contact import (
+    ALONG,
+    AT_BOTH,
+    DEPTH,
+    DISTANCE,
+    FIRST,
+    follow_contact,
+)
 from standoff.kernels.state.arrays import BAD_POSE_A
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
 from standoff.solids.tracked.asks import Asks
+from standoff.solids.tracked.contact import ContactFrames, new_contact_room
 from standoff.solids.tracked.front import Frames, Front, new_room, room_for
 from standoff.solids.tracked.run import Run, status_of
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.inputs import LAST_ROW, flat_and_mark, repair
+from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 ARRAY = np.ndarray
@@ -63,6 +73,12 @@ class SolidFrameBuffer:
         self._normal, self._point_a, self._point_b = views
         self._pair, self.repaired = (asks.a, asks.b), 0
         self._answer: SolidProximity | None = None
+        self._frames: Frames | None = None
+        self._contact: ContactFrames | None = None
+        self._call: tuple[Any, ...] = ()
+        self._room_of_contact = new_contact_room()
+        pressed = self._room_of_contact.told[AT_BOTH : ALONG + 3].reshape(3, 3)
+        self._pressed_at, self._pressed_along = pressed[:2], pressed[2]
         self._load(state.front, state.born)
         self._tell(state.proximity)
 
@@ -86,13 +102,17 @@ class SolidFrameBuffer:
     @property
     def state(self) -> SolidState:
         """What ``step`` would go on from, as a value."""
-        front = self._front if self._frames is None else self._frames.kept()
+        frames = self._frames or self._contact
+        front = self._front if frames is None else frames.kept()
         born = self._born if front is None else front.born
         return SolidState(self.proximity(), self._pair, front, born)
 
     def proximity(self) -> SolidProximity:
         """The last answer as a value."""
-        if self._answer is None:
+        if self._answer is None and self._contact is not None:
+            places = self._contact.places()
+            self._answer = self.asks.in_contact(self._run().pair(0), places)
+        elif self._answer is None:
             assert self._frames is not None
             self._answer = self._run().made(self._told, self._inside, self._frames.told(self._told))
         return self._answer
@@ -121,7 +141,7 @@ class SolidFrameBuffer:
             repair(*side)
             self.repaired += 1
         if self._frames is None:
-            return self._anew()
+            return self._anew() if self._contact is None else self._in_contact(self._contact)
         T.solid_frames(*self._call)
         row = self._told[0]
         if row.item(T.ENDED) != T.SINGLE or row.item(T.SURE) == 0.0:
@@ -149,10 +169,30 @@ class SolidFrameBuffer:
         return Run(self.asks, state, self._a.copy(), self._b.copy())
 
     def _anew(self) -> float:
-        """A frame after one in which the solids met."""
+        """A frame after one that nothing is kept of."""
         state, answer = self._run(self._front).single()
         self._load(state.front, state.born)
         return self._tell(answer)
+
+    def _in_contact(self, frames: ContactFrames) -> float:
+        """A frame after one in which the solids overlapped."""
+        follow_contact(*self._call)
+        told = frames.told
+        if told.item(FIRST) < 0.0:
+            front = frames.kept()._replace(contact=None)
+            self._born = front.born
+            state, answer = self._run(front).parted(self._now[0])
+            self._load(state.front, state.born)
+            return self._tell(answer)
+        self._answer, self.status = None, Status.OVERLAPPING
+        np.dot(self._pressed_at, self._turn, out=self._points)
+        self._points += self._shift
+        np.dot(self._pressed_along, self._turn, out=self._away)
+        upper = -told.item(DEPTH)
+        distance: float = min(upper, told.item(DISTANCE))
+        self.distance, self.lower_bound = distance, -math.inf
+        self.upper_bound = upper + self._slack
+        return distance
 
     def _looked_at(self, frames: Frames, before: Array) -> float:
         """A frame that the kernel does not tell alone, after one with B at a pose in A's frame."""
@@ -164,9 +204,13 @@ class SolidFrameBuffer:
         return self._tell(answer)
 
     def _load(self, front: Front | None, born: int) -> None:
-        """Go on from a front; without one, or after an overlap, the next frame is a step."""
-        self._front, self._born, self._frames = front, born, None
-        if front is None or front.contact is not None:
+        """Go on from a front; without one the next frame is a step."""
+        self._front, self._born, self._frames, self._contact = front, born, None, None
+        if front is None:
+            return
+        if front.contact is not None:
+            self._contact = self.asks.contact(front, self._room_of_contact)
+            self._call = self._contact.call(self._now[0])
             return
         self._frames, self._inside = self.asks.frames(front, self._room), front.inside
         self._plain = status_of(front.inside)

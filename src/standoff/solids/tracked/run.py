@@ -44,12 +44,19 @@ class Run:
         self.merged: dict[tuple[int, int], int] = {}
         self.minima, self.first = [NO_ROWS], np.zeros(len(a) + 1, dtype=np.int64)
         self._before: Array | None = None
+        self._parted = False
 
     def single(self) -> tuple[SolidState, SolidProximity]:
         """Of a run of one frame, without arrays."""
         front = self._through()
         answer = self.special[0] if self.special else self._made(0)
         return self._state(answer, front), answer
+
+    def parted(self, before: Array) -> tuple[SolidState, SolidProximity]:
+        """`single`, after a frame in which the solids overlapped with B at the pose `before` (12,)
+        in A's frame, where their places do not prove that they do any more."""
+        self._before, self._parted = before, True
+        return self.single()
 
     @property
     def _first(self) -> Array:
@@ -63,6 +70,8 @@ class Run:
     def _overlapped(self, k: int) -> bool:
         """Did the solids overlap in a frame, -1: in the answer that the run begins from? A frame
         that is not among the special ones tells that they are apart."""
+        if k < 0 and self._before is not None:
+            return self._parted
         answer = self.state.proximity if k < 0 else self.special.get(k)
         return answer is not None and answer.overlap is not None
 
@@ -147,11 +156,12 @@ class Run:
     ) -> tuple[Front | None, int]:
         """A frame in which the solids may overlap, after a motion, length, and those after it if
         they do not; the front after them."""
-        pair, in_contact = self._pair(at), front is not None and front.contact is not None
+        pair, in_contact = self.pair(at), front is not None and front.contact is not None
         before = self.relative[at - 1] if at else self._first
         if in_contact:
             motion = moved_by(before, pair.relative, self.asks.b.size)
-        told = self.asks.met(pair, front, self.born, None if self._overlapped(at - 1) else before)
+        placed = pair, self.relative[at]
+        told = self.asks.met(placed, front, self.born, None if self._overlapped(at - 1) else before)
         if told is not None:
             self.special[at], front, merged = told
             for _, key, into in merged.tolist():
@@ -206,13 +216,14 @@ class Run:
         self.minima.append(minima)
         return self._made(0)
 
-    def _pair(self, k: int) -> PlacedPair:
+    def pair(self, k: int) -> PlacedPair:
+        """Both at their poses in a frame."""
         poses = (_checked(row) for row in (self.a[k], self.b[k]))
         return PlacedPair(self.asks.a, self.asks.b, *poses)
 
     def _ask(self, k: int) -> Front | None:
         """A frame from nothing."""
-        self.special[k], front = self.asks.cold(self._pair(k), self.born)
+        self.special[k], front = self.asks.cold(self.pair(k), self.born)
         if front is not None:
             self.born = front.born
         self.told[k, T.MOTION], self.told[k, T.ANEW] = np.nan, 0.0
@@ -225,7 +236,7 @@ class Run:
             return False
         if row[T.ENDED] == T.SINGLE and row[T.SURE]:
             return True
-        pair = self._pair(k)
+        pair = self.pair(k)
         if not row[T.SURE] and inside_of(pair) != inside:
             return False
         if row[T.ENDED] != T.SINGLE:
@@ -235,7 +246,7 @@ class Run:
 
     def _made(self, k: int) -> SolidProximity:
         """The answer of a frame that is proven at one place."""
-        row, pair, inside = self.told[k], self._pair(k), self.inside[k]
+        row, pair, inside = self.told[k], self.pair(k), self.inside[k]
         found = _found(row, self.asks.sought(pair).tolerance)
         minima = self._minima_of(k)
         senses, rows = senses_of(inside), list(minima[:, :POINTS]) or [found.best]

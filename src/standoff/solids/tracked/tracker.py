@@ -165,7 +165,7 @@ class SolidTracker(KeepsReadOnly):
 
         ``buffer.distance``, ``lower_bound``, ``upper_bound``, ``normal``, ``point_a``, ``point_b``
         and ``status`` read its answer without making an object. A frame that ties, or in which the
-        solids meet, is made as ``step`` makes it.
+        solids begin or cease to overlap, or only touch, is made as ``step`` makes it.
 
         Parameters
         ----------

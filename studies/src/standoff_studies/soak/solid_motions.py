@@ -6,6 +6,9 @@ each held for up to 500 frames in which no point of B moves by more than nine te
 from it, far off towards it. Of each stretch one frame is asked from nothing as well; of one stretch
 in twenty it is also judged by `solid_judge`. The first stretches of a motion keep all local minima
 below a length, and each that a query from nothing finds must be among them.
+
+With ``--deadline N`` a frame has N evaluations. One that has not converged by then is no fault if
+its interval is true; its minima are not sought.
 """
 
 from __future__ import annotations
@@ -121,15 +124,22 @@ class Motion:
         return poses
 
 
+def budget(deadline: int | None) -> dict[str, int]:
+    """What a tracker is given for a run with so many evaluations a frame; None: as many as there
+    are by default."""
+    return {} if deadline is None else {"deadline": deadline}
+
+
 def stretches(
-    a: Any, b: Any, frames: int, rng: np.random.Generator
+    a: Any, b: Any, frames: int, rng: np.random.Generator, deadline: int | None = None
 ) -> Iterator[tuple[Array, SolidAnswers, float, float]]:
     """(poses, answers, length below which minima are kept or 0, seconds) of a motion."""
-    motion, trackers = Motion(a, b, rng), {0.0: SolidTracker(a, b)}
+    asked = budget(deadline)
+    motion, trackers = Motion(a, b, rng), {0.0: SolidTracker(a, b, **asked)}
     answer = trackers[0.0].start(STILL, motion.pose).proximity
     done, state, last, number = 0, None, -1.0, 0
     below = float(answer.distance + MINIMA_BELOW * motion.size)
-    trackers[below] = SolidTracker(a, b, minima=below)
+    trackers[below] = SolidTracker(a, b, minima=below, **asked)
     while done < frames:
         poses = motion.stretch(answer, frames - done)
         length = below if number < MINIMA_STRETCHES else 0.0
@@ -142,13 +152,17 @@ def stretches(
 
 
 def judged_motion(
-    number: int, seed: int, pairs: list[tuple[str, str]], frames: int
+    number: int,
+    seed: int,
+    pairs: list[tuple[str, str]],
+    frames: int,
+    deadline: int | None = None,
 ) -> tuple[Verdict, list[str]]:
     """A motion of a pair, and its faults' lines."""
     rng = np.random.default_rng([seed, number])
     (one, a), (two, b) = (made(name) for name in pairs[number % len(pairs)])
     verdict, lines = Verdict(), []
-    for k, (poses, answers, below, seconds) in enumerate(stretches(a, b, frames, rng)):
+    for k, (poses, answers, below, seconds) in enumerate(stretches(a, b, frames, rng, deadline)):
         i = int(rng.integers(len(poses)))
         told, faults, judged, minima, lost = answers[i], [], 0, 0, 0
         cold = spatial_distance(a, b, STILL, poses[i])
@@ -161,8 +175,8 @@ def judged_motion(
             true = truths(one, two, STILL[None], poses[i : i + 1])[0]
             faults += [kind for kind, _ in faults_of(Case(one, two, *true, told))]
         wrong = bool(faults)
-        if below > 0.0:
-            minima, lost = _missing(a, b, poses[i], below, told)
+        if below > 0.0 and (deadline is None or told.certified):
+            minima, lost = missing(a, b, poses[i], below, told)
             faults += [f"{lost} minima lost"] * (lost > 0)
         names = Counter(status.name for status in answers.status)
         verdict = verdict.plus(
@@ -176,7 +190,7 @@ def judged_motion(
     return verdict, lines
 
 
-def _missing(a: Any, b: Any, pose: Array, below: float, told: SolidProximity) -> tuple[int, int]:
+def missing(a: Any, b: Any, pose: Array, below: float, told: SolidProximity) -> tuple[int, int]:
     """How many local minima a query from nothing finds, and how many of them a frame has not."""
     cold = distance(a, b, STILL, pose, minima=below)
     known = np.array([each.distance for each in told.minima])
@@ -190,8 +204,12 @@ def main() -> int:
     """Read the options, run, and tell; 1 if anything was wrong."""
     parser = blocks.options(__doc__, "frames", 10_000_000, BLOCK)
     parser.add_argument("--parts", nargs="+", default=list(MAKERS), choices=list(MAKERS))
+    parser.add_argument("--deadline", type=int, help="most evaluations of a frame")
     given = parser.parse_args()
-    work = partial(judged_motion, seed=given.seed, pairs=pairs_of(given.parts), frames=BLOCK)
+    work = partial(
+        judged_motion, seed=given.seed, pairs=pairs_of(given.parts), frames=BLOCK,
+        deadline=given.deadline,
+    )  # fmt: skip
     verdict = blocks.run(given, BLOCK, work)
     return 0 if verdict is None or verdict.sound else 1
 
