@@ -95,69 +95,14 @@ def peak() -> float:
     return CHAIN * len(values) * times / min(taken)
 
 
-COUNT = r"""
-import json, math
-import numpy as np
-import standoff as so
-from standoff.kernels.algebra import roots
-from standoff.kernels.lanes import ellipsoids
-from standoff.kernels.lanes.layout import ROWS
-from standoff.kernels.values import Pair
-counts = dict.fromkeys(["add", "mul", "div", "sqrt"], 0)
-class Counted(float):
-    pass
-def counting(name, method):
-    plain = getattr(float, method)
-    def operate(self, other):
-        counts[name] += 1
-        return Counted(plain(self, float(other)))
-    setattr(Counted, method, operate)
-for name, methods in {"add": "__add__ __radd__ __sub__ __rsub__", "mul": "__mul__ __rmul__",
-                      "div": "__truediv__ __rtruediv__"}.items():
-    for method in methods.split():
-        counting(name, method)
-Counted.__neg__ = lambda self: Counted(-float(self))
-Counted.__abs__ = lambda self: Counted(abs(float(self)))
-def root(x):
-    counts["sqrt"] += 1
-    return Counted(math.sqrt(x))
-roots._root = root
-ellipsoids.reals_on_stack = lambda count: np.array([Counted(0.0)] * count, dtype=object)
-axes = AXES
-a, b = so.shapes.ellipsoid(*axes[0]), so.shapes.ellipsoid(*axes[1])
-def counted(values):
-    return np.array([Counted(x) for x in values], dtype=object)
-pair = Pair(a.ints, counted(a.reals), b.ints, counted(b.reals))
-rng = np.random.default_rng(1)
-poses = np.empty((12, ROWS))
-for row in range(ROWS):
-    q, r = np.linalg.qr(rng.normal(size=(3, 3)))
-    q = q * np.linalg.det(q)
-    way = rng.normal(size=3)
-    poses[:9, row], poses[9:, row] = q.ravel(), 2.6 * way / np.linalg.norm(way)
-still = np.zeros((12, ROWS)); still[[0, 4, 8]] = 1.0
-answers, good = counted(np.zeros(ellipsoids.N_ANSWER)), np.zeros(ROWS, dtype=np.int64)
-poses, still = counted(poses.ravel()), counted(still.ravel())
-turns = ellipsoids.query_block(pair, 1e-6, poses, still, answers, good)
-whole = dict(counts)
-for key in counts: counts[key] = 0
-state = np.array([Counted(0.1)] * (8 * ROWS), dtype=object)
-of_a, of_b = (ellipsoids.ellipsoid_of(ellipsoids.map_of(body.ints, reals, 0))
-              for body, reals in ((a, pair.reals_a), (b, pair.reals_b)))
-ellipsoids.turn(of_a, of_b, poses, state)
-print(json.dumps({"turns": turns, "whole": {k: v / ROWS for k, v in whole.items()},
-                  "turn": {k: v / ROWS for k, v in counts.items()}, "good": int(good.sum())}))
-"""
-
-
-def operations(axes: Any) -> dict[str, Any]:
-    """Of a row, by kind: all, and those of a turn of the normal."""
-    code = COUNT.replace("AXES", repr(axes))
-    environment = os.environ | {"NUMBA_DISABLE_JIT": "1", "STANDOFF_QUIET": "1"}
+def operations(axes: Any) -> dict[str, float]:
+    """Of a row, by kind, and how many normals were tried."""
     done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
-    )
-    counted: dict[str, Any] = json.loads(done.stdout)
+        [sys.executable, "-m", "benchmarks.lane_operations", *(str(x) for x in np.ravel(axes))],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1", "STANDOFF_QUIET": "1"},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    counted: dict[str, float] = json.loads(done.stdout)
     return counted
 
 
@@ -217,11 +162,12 @@ def main() -> None:
                 f"general code ({other / one:.1f} times), two threads {one / two:.2f} times, "
                 f"distances differ by {miss:.1e} of the size"
             )
-        whole = counted["whole"]
-        flops = sum(whole.values())
+        kinds = ("add", "multiply", "divide", "root")
+        flops = sum(counted[kind] for kind in kinds)
         print(
-            f"  {counted['turns']} turns: {flops:.0f} operations a row ({whole['div']:.0f} "
-            f"divisions, {whole['sqrt']:.0f} roots), {flops / one / (2.0 * fused):.1%} of the peak"
+            f"  {counted['tried']:.1f} normals a row: {flops:.0f} operations "
+            f"({counted['divide']:.0f} divisions, {counted['root']:.0f} roots), "
+            f"{flops / one / (2.0 * fused):.1%} of the peak"
         )
     print("machine code:", dict(sorted(instructions().items())))
 

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from families.solid_shapes import ball, bolt, bracket, egg, peg, prism, ring, socket, tube
 from standoff.solids import Solid, SolidAnswers, SolidState, SolidTracker
+from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.tracked import front
 
 Array = np.ndarray
@@ -302,6 +303,24 @@ def test_no_frame_takes_much_longer_than_it_may_and_all_are_true(name: str) -> N
     late = answers.status == so.Status.DEADLINE
     assert (answers.evaluations[late] > LITTLE).all()
     assert not answers.certified[late].any()
+
+
+def test_a_query_cut_short_leaves_what_frames_go_on_from() -> None:
+    """Nothing is known after it: each frame at rest proves some more, until all is."""
+    a, b = PAIRS["bolt, tube"]
+    apart = wandering(a, b, 120, 4e-3, np.random.default_rng(2), 5e-3)[-1]
+    hasty = SolidTracker(a, b, deadline=300)
+    pair = PlacedPair(a, b, so.Pose.identity(), so.Pose.of(apart))
+    first, kept = hasty._asks.cold(pair)
+    assert first.status is so.Status.DEADLINE
+    assert first.lower_bound <= 0.0
+    state = SolidState(first, (a, b), kept, 0)
+    _, answers = hasty.run(state, STILL, np.repeat(apart[None], 40, axis=0))
+    assert not answers.restarts.any()
+    assert answers.certified[-1]
+    cold = so.solids.distance(a, b, STILL, apart)
+    assert (answers.lower_bound <= cold.upper_bound).all()
+    assert (answers.upper_bound >= cold.lower_bound).all()
 
 
 def test_afront_that_has_grown_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:

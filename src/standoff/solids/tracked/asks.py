@@ -43,6 +43,7 @@ from standoff.solids.tracked.front import (
     front_in_contact,
     room_for,
 )
+from standoff.tracking.status import Status
 
 Array = NDArray[np.float64]
 
@@ -104,11 +105,15 @@ class Asks(NamedTuple):
         nearest = self._replace(options=self.options._replace(minima=None, patch=None))
         answer = spatial_distance(self.a, self.b, pose_a, pose_b, nearest.options)
         answer = replace(answer, counts=answer.counts._replace(restarts=1))
-        if answer.lower_bound <= 0.0:
+        undecided = answer.status is Status.DEADLINE and answer.distance > 0.0
+        if answer.lower_bound <= 0.0 and not undecided:
             return answer, None
         senses = senses_of(answer.inside)
         found = pair.least(senses, nearest.sought(pair))
         front = front_at(pair, found, senses, self.sought(pair), born)
+        if answer.lower_bound <= 0.0:
+            # another query would come no farther: frames go on with what each of them proves
+            return answer, front
         frames = self.frames(front)
         frames.go(pair.relative[None], room_for(1))
         if self.options.minima is not None:
