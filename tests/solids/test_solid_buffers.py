@@ -12,7 +12,8 @@ from test_tracked_solids import wandering
 
 import standoff as so
 from families.solid_shapes import bolt, bracket, tube
-from standoff.kernels.entries.solid_contact import FIRST, follow_contact
+from standoff.kernels.entries.solid_blocks import Q_POINTS
+from standoff.kernels.entries.solid_contact import DEPTH, FIRST, follow_contact
 from standoff.solids import SolidFrameBuffer, SolidProximity
 from standoff.solids.tracked import contact, frame_buffer
 from standoff.tracking.status import Status
@@ -161,6 +162,27 @@ def test_places_that_prove_nothing(asked: dict[str, Any], monkeypatch: pytest.Mo
         if again:
             assert answer.status is Status.OVERLAPPING
     assert seen > 2
+
+
+def test_what_a_proof_may_take_is_that_of_one_frame() -> None:
+    """Allowed little more than the first frame takes, all others prove as much."""
+    lid, pad = so.Solid(so.shapes.box((4, 4, 1))), so.shapes.box((1, 1, 1))
+    poses = carried(down(tuple(np.linspace(1.03, 0.97, 16)), (0.02, 0.03, 0.0)))
+    tracker = so.Tracker(lid, pad)
+    state = tracker.start(A, poses[0])
+    for pose in poses[1:]:
+        state, answer = tracker.step(state, A, pose)
+    assert answer.overlap is not None
+    frames, of_b = tracker.asks.contact(state.front), np.linalg.inv(A.matrix) @ poses[-1]
+    relative = np.concatenate([of_b[:3, :3].ravel(), of_b[:3, 3]])
+    assert frames.go(relative)
+    taken, depth = int(frames.work.counts[8:].sum()), float(frames.told[DEPTH])
+    assert taken > 0
+    frames.asked[Q_POINTS] = 1.5 * taken
+    for _ in range(20):
+        assert frames.go(relative)
+        assert frames.work.counts[8:].sum() == taken
+        assert frames.told[DEPTH] == depth
 
 
 def test_poses_are_read_in_every_form() -> None:

@@ -176,6 +176,8 @@ def given_at(table, address):
     nodes = ints_at(address + 8 * W_NODES, 2 * MOST_NODES)
     counts = ints_at(address + 8 * W_COUNTS, 16)
     asked = tabled_reals(table, T_ASKED)
+    for k in range(8):
+        counts[8 + k] = 0  # each frame's proof may take as much as is asked
     probe = probe_of(table, block, asked, nodes, ahead(counts, 8))
     a = known_of(table, 0, asked[Q_SIZE_A])
     b = known_of(table, T_OF_SOLID, asked[Q_SIZE_B])
