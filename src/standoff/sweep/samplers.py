@@ -27,7 +27,7 @@ SOBOL_BITS = 52
 """Digits of a Sobol' number: all that a double has, and more rows than anybody computes."""
 
 SOBOL_TABLE = 12
-"""Digits of a row's number whose part of the point is kept in a table: 200 kB for six parameters."""
+"""Digits of a row's number whose part of the point is kept in a table: 200 kB of six parameters."""
 
 SOBOL_CHECKED = 16
 """Points that are compared with SciPy's own when a sampler is made."""
@@ -137,7 +137,8 @@ class SobolSampler:
         numbers = np.arange(first, end)
         found = self._table[numbers & ((1 << SOBOL_TABLE) - 1)]
         found ^= heads[(numbers >> SOBOL_TABLE) - above[0]]
-        return found * 2.0**-self.bits
+        points: Array = found * 2.0**-self.bits
+        return points
 
     @cached_property
     def _table(self) -> NDArray[np.uint64]:

@@ -1,0 +1,183 @@
+"""A sweep run, or gone on with: shards computed by processes, then merged in their order."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from standoff.errors import StandoffError
+from standoff.kernels.compiler.notices import QUIET
+from standoff.progress import Progress
+from standoff.sweep.folder import (
+    REPORT,
+    indented,
+    kept_shard,
+    locked,
+    make_shard,
+    missing_shards,
+    prepare,
+    write_text,
+)
+from standoff.sweep.job import Job, load_job
+from standoff.sweep.report import Report, report_facts
+from standoff.sweep.summary import Summary
+
+Tell = Callable[[str], None]
+
+AHEAD = 2
+"""Shards per process that are handed out before they are asked for."""
+
+
+def run_sweep(
+    job: Job,
+    folder: Path,
+    *,
+    workers: int = 1,
+    progress: Progress | None = None,
+    tell: Tell = lambda line: None,
+) -> Report:
+    """Compute a sweep's shards that are not in a folder yet, and write the report.
+
+    Stopped at any moment, it goes on where it was when it is run again. The files of the folder
+    are the same, byte for byte, for any number of workers and of stops.
+
+    Parameters
+    ----------
+    job : Job
+    folder : Path
+        Made if it is not there.
+    workers : int
+        Processes that share the shards.
+    progress : callable, optional
+        Called with the rows done and the rows in all.
+    tell : callable
+        Called with a line about each file that could not be used.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    FolderError
+        If another run holds the folder, or it holds something else, or another job.
+    OSError
+        If a file cannot be written, as on a full disk; whole shards stay.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder):
+        prepare(folder, job)
+        missing = missing_shards(job, folder, tell)
+        done = job.rows - sum(_length(job, k) for k in missing)
+        if progress is not None:
+            progress(done, job.rows)
+        for k in _made(job, folder, missing, workers):
+            done += _length(job, k)
+            if progress is not None:
+                progress(done, job.rows)
+        report = Report(job, merged(job, folder))
+        write_text(folder / REPORT, indented(report_facts(report)))
+        return report
+
+
+def merged(job: Job, folder: Path) -> Summary:
+    """Return what is kept of all rows, from the files of all shards.
+
+    Raises
+    ------
+    StandoffError
+        If one is missing.
+    """
+    found = Summary(job.keep)
+    for k in range(job.shards):
+        part = kept_shard(job, folder, k)
+        if part is None:
+            raise StandoffError(f"shard {k} has been removed from {folder}: run it again", "folder")
+        found.add(part)
+    return found
+
+
+def _length(job: Job, k: int) -> int:
+    first, end = job.shard(k)
+    return end - first
+
+
+def _made(job: Job, folder: Path, missing: Sequence[int], workers: int) -> Iterator[int]:
+    """Make shards; yields each one's number when it is there."""
+    if workers == 1 or len(missing) < 2:
+        for k in missing:
+            yield make_shard(job, folder, k)
+        return
+    # Here, so that one process compiles what is not compiled yet.
+    job.distances(*job.shard(missing[0])[:1], job.shard(missing[0])[0] + 1)
+    with _processes(job, min(workers, len(missing))) as pool:
+        left, running = list(reversed(missing)), set[Future[int]]()
+        while left or running:
+            while left and len(running) < AHEAD * workers:
+                running.add(pool.submit(_work, str(folder), left.pop()))
+            ended, running = wait(running, return_when=FIRST_COMPLETED)
+            for each in ended:
+                yield _result(each)
+
+
+def _result(ended: Future[int]) -> int:
+    try:
+        return ended.result()
+    except BrokenProcessPool as error:
+        raise OSError(
+            "a worker's process ended by itself, as when memory runs out; run the same command "
+            "again to go on, with fewer --workers if it happens again"
+        ) from error
+
+
+@contextmanager
+def _processes(job: Job, workers: int) -> Iterator[ProcessPoolExecutor]:
+    # spawn: a fork would copy the locks of the threads of Numba and of the progress bar
+    pool = ProcessPoolExecutor(
+        workers,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_begin,
+        initargs=(os.path.abspath(job.file), job.digest),
+    )
+    try:
+        yield pool
+    except BaseException:
+        # A shard that is half done is given up: its file is not there.
+        for process in list((pool._processes or {}).values()):
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+_job: list[Job] = []
+"""A worker's own."""
+
+
+def _begin(file: str, digest: str) -> None:
+    """Make a new process a worker: it reads the job, and ends with its parent."""
+    os.environ[QUIET] = "1"
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt ends
+    threading.Thread(target=_follow_parent, daemon=True).start()
+    job = load_job(file)
+    if job.digest != digest:
+        raise StandoffError(f"{file} has been changed while the sweep began: run it again", "job")
+    _job.append(job)
+
+
+def _follow_parent() -> None:
+    parent: Any = multiprocessing.parent_process()
+    parent.join()
+    os._exit(1)
+
+
+def _work(folder: str, k: int) -> int:
+    return make_shard(_job[0], Path(folder), k)
