@@ -35,9 +35,7 @@ class Bins(NamedTuple):
     @property
     def edges(self) -> Array:
         """(number + 1,) ends of the bins."""
-        share = np.arange(self.number + 1) / self.number
-        edges: Array = (1.0 - share) * self.low + share * self.high
-        return edges
+        return np.linspace(self.low, self.high, self.number + 1)
 
 
 class Keep(NamedTuple):
