@@ -11,6 +11,7 @@ from standoff.cli.summary import line, share_text, vector_text
 from standoff.sweep.estimate import Estimate
 from standoff.sweep.folder import REPORT
 from standoff.sweep.job import Job
+from standoff.sweep.parameters import UNIFORM, Parameter
 from standoff.sweep.report import Report, numbers_of
 from standoff.sweep.summary import Listed, Rows, Spread
 from standoff.tracking.many_distances import Distances
@@ -37,9 +38,14 @@ def _grouped(number: int) -> str:
     return f"{number:,}".replace(",", " ")
 
 
+def _what(parameter: Parameter) -> str:
+    what = "uniform rotation" if parameter.what == UNIFORM else parameter.what
+    return f"{what} of {parameter.moves}"
+
+
 def _head(job: Job) -> list[str]:
     a, b = job.scene.pair
-    ways = ", ".join(f"{p.name} ({p.what} of {p.moves})" for p in job.parameters)
+    ways = ", ".join(f"{p.name} ({_what(p)})" for p in job.parameters)
     seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
     return [
         line("sweep", f"{job.title}: {a} and {b}"),
@@ -70,7 +76,7 @@ def report_lines(report: Report, folder: Path) -> list[str]:
 
 def _certified(report: Report) -> str:
     found = report.found
-    told = f"{_grouped(found.certified)} of {counted(found.rows, 'row')}, "
+    told = f"{_grouped(found.certified)} of {_grouped(found.rows)} rows, "
     told += share_text(found.certified, found.rows)
     missed = found.uncertified
     if missed.count:
@@ -150,9 +156,8 @@ def row_lines(job: Job, row: int, numbers: Array, found: Distances) -> list[str]
     for p in job.parameters:
         values = " ".join(f"{x:.17g}" for x in numbers[at : at + p.width].tolist())
         at += p.width
-        told = f"{p.what} of {p.moves}"
         own = f" {unit if not p.unit and p.width == 1 else p.unit}".rstrip()
-        lines.append(line(p.name, f"{values}{own}, {told}"))
+        lines.append(line(p.name, f"{values}{own}, {_what(p)}"))
     for name, poses in zip((a, b), found.poses, strict=True):
         rows = [" ".join(f"{x:.9g}" for x in part) for part in poses[0][:3].tolist()]
         lines += [line(f"pose {name}" if k == 0 else "", text) for k, text in enumerate(rows)]

@@ -52,7 +52,8 @@ class Rows(NamedTuple):
         given = answers[:, K.STATUS]
         status = np.where(np.isnan(given), Status.REFUSED.value, given).astype(np.int64)
         numbers = np.arange(first, first + len(answers))
-        return cls(numbers, answers[:, K.DISTANCE], answers[:, K.LOWER_BOUND], status)
+        distance, lower_bound = (answers[:, k].copy() for k in (K.DISTANCE, K.LOWER_BOUND))
+        return cls(numbers, distance, lower_bound, status)
 
     def at(self, which: Any) -> Rows:
         """Return some of them."""
