@@ -28,7 +28,7 @@ LAWS = {
     *(f"standoff.tracking{part}" for part in ("", ".laws", ".law_options")),
 }
 COMMANDS = (
-    *("track", "distance", "impact", "clearance", "check", "automaton"),
+    *("track", "distance", "impact", "clearance", "check", "automaton", "sweep"),
     *("paper", "soak", "accuracy", "warmup"),
 )
 STUDIES = ("paper", "soak", "accuracy")

@@ -206,6 +206,7 @@ def test_folders_of_something_else_are_refused(make: Make, tmp_path: Path) -> No
     (folder / "thesis.tex").touch()
     with pytest.raises(FolderError, match=r"holds thesis\.tex and no sweep"):
         run_sweep(job, folder)
+    assert list(contents(folder)) == ["thesis.tex"]
     for text in ("", "[]", "{}", '{"format": "x"}'):
         (folder / "manifest.json").write_text(text)
         with pytest.raises(FolderError, match="is not a manifest of a sweep"):

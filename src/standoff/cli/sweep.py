@@ -69,7 +69,6 @@ def _row(command: SweepCommand, job: Job, row: int) -> int:
     if command.json:
         facts: dict[str, Any] = {"row": row}
         facts["parameters"] = dict(zip(job.columns, numbers[0].tolist(), strict=True))
-        facts["poses"] = dict(zip("ab", (poses[0].tolist() for poses in found.poses), strict=True))
         tell(json_text(facts | answer.as_dict()))
     else:
         tell("\n".join(row_lines(job, row, numbers[0], found)))

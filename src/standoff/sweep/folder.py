@@ -94,6 +94,25 @@ def locked(folder: Path) -> Iterator[None]:
         yield
 
 
+def refuse_others(folder: Path) -> None:
+    """Refuse a folder that holds files and no sweep.
+
+    Raises
+    ------
+    FolderError
+    """
+    if (folder / MANIFEST).exists():
+        return
+    others = sorted(entry.name for entry in folder.iterdir() if entry.name != LOCK)
+    others = [name for name in others if not (name.startswith(".") and name.endswith(".part"))]
+    if others:
+        raise FolderError(
+            f"{_named(folder)}: holds {printable(others[0])} and no sweep; name a new folder",
+            "folder",
+            folder,
+        )
+
+
 def prepare(folder: Path, job: Job) -> None:
     """Make the folder ready for the job: new, or with shards of the same job and code.
 
@@ -102,7 +121,7 @@ def prepare(folder: Path, job: Job) -> None:
     Raises
     ------
     FolderError
-        If it holds something else, or what is there is of another job, or by another version.
+        If what is there is of another job, or by another version.
     OSError
         If it cannot be written.
     """
@@ -110,20 +129,11 @@ def prepare(folder: Path, job: Job) -> None:
     file = folder / MANIFEST
     if file.exists():
         _check_manifest(folder, wanted)
-    else:
-        others = sorted(entry.name for entry in folder.iterdir() if entry.name != LOCK)
-        others = [name for name in others if not name.endswith(".part")]
-        if others:
-            raise FolderError(
-                f"{_named(folder)}: holds {printable(others[0])} and no sweep; name a new folder",
-                "folder",
-                folder,
-            )
-    (folder / SHARDS).mkdir(exist_ok=True)
     for left in (*folder.glob(".*.part"), *(folder / SHARDS).glob(".*.part")):
         left.unlink(missing_ok=True)  # of a process that was killed
     if not file.exists():
-        write_text(file, indented(wanted))
+        write_text(file, indented(wanted))  # first of all: without it, the folder is no sweep's
+    (folder / SHARDS).mkdir(exist_ok=True)
 
 
 def _check_manifest(folder: Path, wanted: dict[str, Any]) -> None:

@@ -24,6 +24,7 @@ from standoff.sweep.folder import (
     make_shard,
     missing_shards,
     prepare,
+    refuse_others,
     write_text,
 )
 from standoff.sweep.job import Job, load_job
@@ -73,6 +74,7 @@ def run_sweep(
         If a file cannot be written, as on a full disk; whole shards stay.
     """
     folder.mkdir(parents=True, exist_ok=True)
+    refuse_others(folder)
     with locked(folder):
         prepare(folder, job)
         missing = missing_shards(job, folder, tell)
