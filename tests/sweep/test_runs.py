@@ -109,15 +109,18 @@ def test_a_run_that_is_done_is_not_done_again(
 
 
 @pytest.mark.parametrize(
-    ("workers", "kills"),
-    [((1, 2, 1), 3), pytest.param((1, 2, 3), 100, marks=pytest.mark.soak)],
+    ("workers", "kills", "seed"),
+    [
+        ((1, 2, 1), 3, 3),
+        *(pytest.param((1, 2, 3), 10, seed, marks=pytest.mark.soak) for seed in range(10, 20)),
+    ],
 )
 def test_killed_at_any_moment_it_ends_with_the_same_bytes(
-    make: Make, tmp_path: Path, script: Path, workers: tuple[int, ...], kills: int
+    make: Make, tmp_path: Path, script: Path, workers: tuple[int, ...], kills: int, seed: int
 ) -> None:
     job = make(MANY)
     run_sweep(job, tmp_path / "whole")
-    rng, folder, early = random.Random(3), tmp_path / "out", 0
+    rng, folder, early = random.Random(seed), tmp_path / "out", 0
     folder.mkdir()
     for k in range(kills):
         process = started(script, job, folder, workers[k % len(workers)])

@@ -50,6 +50,8 @@ def run_sweep_command(command: SweepCommand) -> int:
 def _check(command: SweepCommand) -> None:
     if command.workers < 1:
         raise CommandError(f"--workers: must be 1 or more, got {command.workers}")
+    if command.cluster is not None and command.workers != 1:
+        raise CommandError("--cluster and --workers: the cluster has its own; leave --workers out")
     alone = "--estimate" if command.estimate else "--row"
     if command.estimate and command.row is not None:
         raise CommandError("--estimate and --row: give one of them")
@@ -94,6 +96,7 @@ def _sweep(command: SweepCommand, job: Job) -> int:
                 job,
                 folder,
                 workers=command.workers,
+                cluster=command.cluster,
                 progress=progress,
                 tell=lambda line: tell(f"standoff: {line}", error=True),
             )

@@ -29,6 +29,8 @@ class SweepCommand:
     """Folder for shards and report, new or of the same job."""
     workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
     """Processes that share the shards; 1 if not given. The files are the same for any number."""
+    cluster: Annotated[str | None, arg(metavar="ADDRESS", help_behavior_hint="")] = None
+    """Share the shards on a cluster of Dask instead; the address of its scheduler."""
     estimate: Annotated[bool, arg(help_behavior_hint="")] = False
     """Try some thousand rows, tell what all will take, and write nothing."""
     row: Annotated[int | None, arg(metavar="NUMBER", help_behavior_hint="")] = None

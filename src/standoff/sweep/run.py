@@ -16,6 +16,7 @@ from typing import Any
 from standoff.errors import StandoffError
 from standoff.kernels.compiler.notices import QUIET
 from standoff.progress import Progress
+from standoff.sweep.cluster import made_on_cluster
 from standoff.sweep.folder import (
     REPORT,
     indented,
@@ -42,6 +43,7 @@ def run_sweep(
     folder: Path,
     *,
     workers: int = 1,
+    cluster: str | None = None,
     progress: Progress | None = None,
     tell: Tell = lambda line: None,
 ) -> Report:
@@ -57,6 +59,8 @@ def run_sweep(
         Made if it is not there.
     workers : int
         Processes that share the shards.
+    cluster : str, optional
+        Address of Dask's scheduler, whose workers share them in place of processes.
     progress : callable, optional
         Called with the rows done and the rows in all.
     tell : callable
@@ -71,7 +75,9 @@ def run_sweep(
     FolderError
         If another run holds the folder, or it holds something else, or another job.
     OSError
-        If a file cannot be written, as on a full disk; whole shards stay.
+        If a file cannot be written, as on a full disk, or the cluster is lost; whole shards stay.
+    ModuleNotFoundError
+        If a cluster is named and Dask is not installed.
     """
     folder.mkdir(parents=True, exist_ok=True)
     refuse_others(folder)
@@ -81,7 +87,11 @@ def run_sweep(
         done = job.rows - sum(_length(job, k) for k in missing)
         if progress is not None:
             progress(done, job.rows)
-        for k in _made(job, folder, missing, workers):
+        if cluster is None:
+            made = _made(job, folder, missing, workers)
+        else:
+            made = made_on_cluster(job, folder, missing, cluster)
+        for k in made:
             done += _length(job, k)
             if progress is not None:
                 progress(done, job.rows)
