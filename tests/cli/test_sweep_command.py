@@ -142,6 +142,9 @@ def test_the_estimate_of_the_disk_is_near(standoff: Standoff, job: Path, tmp_pat
         (["--row", "1", "--estimate"], "--estimate and --row: give one of them"),
         (["--row", "1", "-o", "out"], "-o: --row writes nothing; leave it out"),
         (["--estimate", "-o", "out"], "-o: --estimate writes nothing; leave it out"),
+        (["--estimate", "--plot", "a.png"], "--plot: --estimate writes nothing; leave it out"),
+        (["--row", "1", "--plot", "a.bmp"], "--plot a.bmp: the ending '.bmp' is not known"),
+        (["-o", "out", "--cluster", "a", "--workers", "2"], "--cluster and --workers"),
         (["-o", "job.toml"], "-o job.toml: is a file, not a folder"),
         (["-o", "."], "-o"),
     ],
@@ -233,3 +236,31 @@ def test_a_job_and_a_scene_do_not_speak_to_the_terminal(
     ended = standoff("sweep", file, "-o", out)
     assert "title was" in ended.err
     assert obeyed(ended.err) == []
+
+
+def test_pictures(standoff: Standoff, job: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "histogram.png"
+    assert standoff("sweep", job, "-o", tmp_path / "out", "--plot", picture).code == 3
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    row = tmp_path / "row.svg"
+    assert standoff("sweep", job, "--row", 5, "--plot", row).code == 0
+    assert "<svg" in row.read_text("utf-8")
+    job.write_text(JOB.replace("histogram = ", "# "), encoding="utf-8")
+    ended = standoff("sweep", job, "-o", tmp_path / "new", "--plot", picture)
+    assert ended.code == 2
+    assert "keeps no histogram; add to [keep] a line such as: histogram = {" in ended.err
+    assert not (tmp_path / "new").exists()
+
+
+def test_the_bars_are_the_counts(job: Path, tmp_path: Path) -> None:
+    report = runs.run_sweep(load_job(job), tmp_path / "out")
+    from standoff.sweep.plot import histogram_figure
+
+    (axes,) = histogram_figure(report).axes
+    heights = [bar.get_height() for bar in axes.patches]
+    under, over, _ = report.found.outside.tolist()
+    assert heights == [*report.found.bins.tolist(), *(n for n in (under, over) if n)]
+    # those wholly below the length have another colour
+    assert len({bar.get_facecolor() for bar in axes.patches[:5]}) == 1
+    assert axes.patches[4].get_facecolor() != axes.patches[5].get_facecolor()
+    assert axes.patches[5].get_facecolor() == axes.patches[49].get_facecolor()

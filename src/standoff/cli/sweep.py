@@ -5,9 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from standoff.cli.errors import CommandError, ExitCode, WriteError
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
 from standoff.cli.facts import json_text
-from standoff.cli.output import make_folder
+from standoff.cli.output import (
+    PLOT_ENDINGS,
+    check_target,
+    kind_of_picture,
+    make_folder,
+    write_whole,
+)
 from standoff.cli.progress import progress_bar
 from standoff.cli.sweep_arguments import SweepCommand
 from standoff.cli.sweep_lines import estimate_lines, report_lines, row_lines
@@ -18,6 +24,7 @@ from standoff.sweep.folder import FolderError
 from standoff.sweep.job import Job, load_job
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.run import run_sweep
+from standoff.tracking.pair_plot import plot as pair_figure
 
 JSON_ROWS = 10
 """Rows of each list that ``--json`` prints; report.json has all."""
@@ -35,6 +42,7 @@ def run_sweep_command(command: SweepCommand) -> int:
     """
     _check(command)
     job = load_job(command.job)
+    _check_plot(command, job)
     try:
         if command.row is not None:
             return _row(command, job, command.row)
@@ -62,12 +70,39 @@ def _check(command: SweepCommand) -> None:
         raise CommandError("-o: name the folder for shards and report, such as: -o swept")
 
 
+def _check_plot(command: SweepCommand, job: Job) -> None:
+    """Refuse a picture that could not be drawn or written afterwards."""
+    if command.plot is None:
+        return
+    if command.estimate:
+        raise CommandError("--plot: --estimate writes nothing; leave it out")
+    check_target(command.plot, "--plot", PLOT_ENDINGS)
+    if command.row is None and job.keep.bins is None:
+        raise CommandError(
+            f"--plot: {command.job} keeps no histogram; add to [keep] a line such as: "
+            "histogram = { from = 0.0, to = 1.0, bins = 50 }"
+        )
+    try:
+        import standoff.sweep.plot  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name), "plot") from error
+
+
+def _draw(command: SweepCommand, figure: Any) -> None:
+    target = command.plot
+    assert target is not None  # else nothing is drawn
+    ending = kind_of_picture(target)
+    write_whole({target: lambda file: figure.savefig(file, format=ending)})
+
+
 def _row(command: SweepCommand, job: Job, row: int) -> int:
     if not 0 <= row < job.rows:
         raise CommandError(f"--row: the job has rows 0 to {job.rows - 1}, got {row}")
     numbers = job.numbers(row, row + 1)
     found = job.distances(row, row + 1)
     answer = found[0]
+    if command.plot is not None:
+        _draw(command, pair_figure(*job.bodies, answer, unit=job.scene.length_unit))
     if command.json:
         facts: dict[str, Any] = {"row": row}
         facts["parameters"] = dict(zip(job.columns, numbers[0].tolist(), strict=True))
@@ -107,6 +142,10 @@ def _sweep(command: SweepCommand, job: Job) -> int:
     except KeyboardInterrupt:
         tell("standoff: interrupted; the same command goes on where it was", error=True)
         return ExitCode.INTERRUPTED
+    if command.plot is not None:
+        from standoff.sweep.plot import histogram_figure
+
+        _draw(command, histogram_figure(report))
     _print(command, report, folder)
     return ExitCode.DONE if report.holds else ExitCode.NOT_CERTIFIED
 

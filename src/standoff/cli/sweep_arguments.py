@@ -35,5 +35,7 @@ class SweepCommand:
     """Try some thousand rows, tell what all will take, and write nothing."""
     row: Annotated[int | None, arg(metavar="NUMBER", help_behavior_hint="")] = None
     """Compute this row alone, and print all of it; the first is 0."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Draw the histogram, or with --row both bodies and the answer (.png, .svg or .pdf)."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print what was found as JSON."""

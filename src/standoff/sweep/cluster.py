@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -52,9 +53,29 @@ def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str
         raise ModuleNotFoundError(told, name="distributed") from error
     if not missing:
         return
+    given = os.path.abspath(job.file), job.digest, digest_of(code_facts())
+    for k, text in _texts(Client, address, given, missing):
+        write_text(shard_file(folder, k), text)
+        yield k
+
+
+def _texts(
+    client_of: Any, address: str, given: tuple[str, str, str], missing: Sequence[int]
+) -> Iterator[tuple[int, str]]:
+    """Numbers and texts of shards, as they come."""
+    from distributed import as_completed
+
+    left = list(reversed(missing))
     try:
-        with Client(address) as client:
-            yield from _made(client, job, folder, missing)
+        with client_of(address) as client:
+            room = AHEAD * max(1, sum(client.nthreads().values()))
+            ask = partial(client.submit, shard_text, *given, pure=False)
+            waiting = as_completed([ask(left.pop()) for _ in missing[:room]])
+            for future in waiting:
+                found = future.result()
+                if left:
+                    waiting.add(ask(left.pop()))
+                yield found
     except (StandoffError, GeneratorExit):
         raise
     except Exception as error:
@@ -62,22 +83,6 @@ def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str
         raise OSError(
             f"the cluster at {address} failed or was lost ({type(error).__name__}: {error})"
         ) from error
-
-
-def _made(client: Any, job: Job, folder: Path, missing: Sequence[int]) -> Iterator[int]:
-    from distributed import as_completed
-
-    given = os.path.abspath(job.file), job.digest, digest_of(code_facts())
-    left = list(reversed(missing))
-    room = AHEAD * max(1, sum(client.nthreads().values()))
-    first = [client.submit(shard_text, *given, left.pop(), pure=False) for _ in missing[:room]]
-    waiting = as_completed(first)
-    for future in waiting:
-        k, text = future.result()
-        if left:
-            waiting.add(client.submit(shard_text, *given, left.pop(), pure=False))
-        write_text(shard_file(folder, k), text)
-        yield k
 
 
 def shard_text(file: str, job_digest: str, code_digest: str, k: int) -> tuple[int, str]:

@@ -79,8 +79,15 @@ def locked(folder: Path) -> Iterator[None]:
     OSError
         If the lock's file cannot be made.
     """
-    import fcntl  # of POSIX alone
-
+    try:
+        import fcntl
+    except ModuleNotFoundError as error:
+        raise FolderError(
+            "a sweep needs the file locks of POSIX, which this system lacks: run it on Linux or "
+            "macOS, or in WSL",
+            "folder",
+            folder,
+        ) from error
     with (folder / LOCK).open("ab") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -129,12 +129,14 @@ def _made(job: Job, folder: Path, missing: Sequence[int], workers: int) -> Itera
             yield make_shard(job, folder, k)
         return
     # Here, so that one process compiles what is not compiled yet.
-    job.distances(*job.shard(missing[0])[:1], job.shard(missing[0])[0] + 1)
-    with _processes(job, min(workers, len(missing))) as pool:
+    first, _ = job.shard(missing[0])
+    job.distances(first, first + 1)
+    given = os.path.abspath(job.file), job.digest, os.path.abspath(folder)
+    with _processes(min(workers, len(missing))) as pool:
         left, running = list(reversed(missing)), set[Future[int]]()
         while left or running:
             while left and len(running) < AHEAD * workers:
-                running.add(pool.submit(_work, str(folder), left.pop()))
+                running.add(pool.submit(_work, *given, left.pop()))
             ended, running = wait(running, return_when=FIRST_COMPLETED)
             for each in ended:
                 yield _result(each)
@@ -151,13 +153,12 @@ def _result(ended: Future[int]) -> int:
 
 
 @contextmanager
-def _processes(job: Job, workers: int) -> Iterator[ProcessPoolExecutor]:
+def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
     # spawn: a fork would copy the locks of the threads of Numba and of the progress bar
     pool = ProcessPoolExecutor(
         workers,
         mp_context=multiprocessing.get_context("spawn"),
         initializer=_begin,
-        initargs=(os.path.abspath(job.file), job.digest),
     )
     try:
         yield pool
@@ -170,19 +171,15 @@ def _processes(job: Job, workers: int) -> Iterator[ProcessPoolExecutor]:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-_job: list[Job] = []
-"""A worker's own."""
+_jobs: dict[str, Job] = {}
+"""A worker's own, by digest."""
 
 
-def _begin(file: str, digest: str) -> None:
-    """Make a new process a worker: it reads the job, and ends with its parent."""
+def _begin() -> None:
+    """Make a new process a worker, which ends with its parent."""
     os.environ[QUIET] = "1"
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt ends
     threading.Thread(target=_follow_parent, daemon=True).start()
-    job = load_job(file)
-    if job.digest != digest:
-        raise StandoffError(f"{file} has been changed while the sweep began: run it again", "job")
-    _job.append(job)
 
 
 def _follow_parent() -> None:
@@ -191,5 +188,10 @@ def _follow_parent() -> None:
     os._exit(1)
 
 
-def _work(folder: str, k: int) -> int:
-    return make_shard(_job[0], Path(folder), k)
+def _work(file: str, digest: str, folder: str, k: int) -> int:
+    if digest not in _jobs:
+        job = load_job(file)
+        if job.digest != digest:
+            raise StandoffError(f"{file} was changed while the sweep began: run it again", "job")
+        _jobs[digest] = job
+    return make_shard(_jobs[digest], Path(folder), k)
