@@ -106,6 +106,18 @@ def test_any_division_gives_the_same(parts: list[int]) -> None:
     assert np.array_equal(found.uncertified.rows.row, np.flatnonzero(~proven))
 
 
+def test_the_worst_of_many_blocks() -> None:
+    """Most rows are passed over, by a limit that sinks from block to block."""
+    keep, rows = Keep(7), np.zeros((5000, K.N_OUT))
+    d = rows[:, K.DISTANCE] = np.random.default_rng(9).normal(size=5000)
+    found = Summary(keep)
+    for start in range(0, 5000, 50):
+        found.add_rows(Rows.of(start, rows[start : start + 50]))
+    order = np.argsort(d)[:7]
+    assert np.array_equal(found.worst.row, order)
+    assert np.array_equal(found.worst.distance, d[order])
+
+
 def test_a_sum_is_exact_in_each_block() -> None:
     rows = np.zeros((3, K.N_OUT))
     rows[:, K.DISTANCE] = [1e16, 1.0, -1e16]
