@@ -11,15 +11,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import pytest
 
 from standoff import whole_files
 from standoff.sweep import folder as folders
 from standoff.sweep import run as runs
+from standoff.sweep.estimate import estimated
 from standoff.sweep.folder import FolderError, locked, shard_file
-from standoff.sweep.job import Job
+from standoff.sweep.job import Job, load_job
 from standoff.sweep.run import run_sweep
 from sweep.conftest import JOB, SCENE, TOP, Make
 
@@ -191,6 +192,27 @@ def test_another_job_is_refused_and_what_differs_is_named(make: Make, tmp_path: 
         run_sweep(make(scene=SCENE.replace("7.0]", "7.1]")), folder)
     assert contents(folder) == before
     assert run_sweep(make(f"# another comment\n{JOB}"), folder).found.rows == 3000
+
+
+def test_arguments_that_are_refused(make: Make, tmp_path: Path) -> None:
+    job: Any = make()
+    for workers in (0, -1, 1.5, True, "2", None):
+        with pytest.raises((TypeError, ValueError), match="workers"):
+            run_sweep(job, tmp_path / "out", workers=workers)  # type: ignore[arg-type]
+        with pytest.raises((TypeError, ValueError), match="workers"):
+            estimated(job, workers)  # type: ignore[arg-type]
+    for wrong in (None, 3, "job.toml"):
+        with pytest.raises(TypeError, match="give what load_job returns"):
+            run_sweep(wrong, tmp_path / "out")  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match="give what load_job returns"):
+            estimated(wrong, 1)  # type: ignore[arg-type]
+    for folder in (None, 3, ""):
+        with pytest.raises((TypeError, ValueError), match="path"):
+            run_sweep(job, folder)  # type: ignore[arg-type]
+    for file in (None, 3, b"job.toml"):
+        with pytest.raises(TypeError, match="path is"):
+            load_job(file)  # type: ignore[arg-type]
+    assert not (tmp_path / "out").exists()
 
 
 def test_another_library_is_refused(

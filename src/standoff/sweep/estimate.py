@@ -6,7 +6,8 @@ import os
 import time
 from typing import NamedTuple
 
-from standoff.sweep.job import Job
+from standoff.checks.numbers import whole_number
+from standoff.sweep.job import Job, check_job
 from standoff.sweep.shard import text_of_shard
 from standoff.sweep.summary import MOST_UNCERTIFIED, Rows, Summary
 
@@ -44,8 +45,22 @@ class Estimate(NamedTuple):
     uncertified: int
 
 
-def estimated(job: Job, workers: int) -> Estimate:
-    """Compute some thousand rows, and tell what all of them will take; writes nothing."""
+def estimated(job: Job, workers: int = 1) -> Estimate:
+    """Compute some thousand rows, and tell what all of them will take; writes nothing.
+
+    Parameters
+    ----------
+    job : Job
+    workers : int
+        As of `run_sweep`.
+
+    Raises
+    ------
+    TypeError, ValueError
+        No job, or a number of workers that is not positive.
+    """
+    check_job(job)
+    whole_number(workers, "workers")
     starts = sorted({job.rows * k // PROBES for k in range(PROBES)})
     job.distances(0, 1)  # compiles, where that is still to be done
     found, began = Summary(job.keep), time.perf_counter()

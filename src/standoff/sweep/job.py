@@ -15,12 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffTypeError
 from standoff.motion import Pose
 from standoff.scene import Scene
 from standoff.sweep.parameters import Parameter, in_ranges, moved
 from standoff.sweep.sample_file import SampleFile
 from standoff.sweep.samplers import Sampler
 from standoff.tracking.many_distances import Distances, answered_rows
+from standoff.whole_files import file_name
 
 Array = NDArray[np.float64]
 
@@ -177,6 +180,17 @@ def digest_of(facts: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode("utf-8")).hexdigest()
 
 
+def check_job(job: Any) -> None:
+    """Refuse what is no job.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if not isinstance(job, Job):
+        raise StandoffTypeError(f"job is {shown(job)}: give what load_job returns.", "job", job)
+
+
 def load_job(file: str | os.PathLike[str]) -> Job:
     """Read, check and build a job.
 
@@ -191,6 +205,8 @@ def load_job(file: str | os.PathLike[str]) -> Job:
 
     Raises
     ------
+    TypeError
+        If `file` is neither a string nor a path.
     SceneError
         If the file or its scene is missing or is not TOML, or anything in them is unknown,
         missing, of the wrong type, not finite, or does not go together. The message names the
@@ -198,4 +214,4 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     """
     from standoff.sweep.reading import read_job
 
-    return read_job(Path(file))
+    return read_job(file_name(os.fspath(file) if isinstance(file, os.PathLike) else file))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from standoff.errors import StandoffError, not_installed
@@ -46,7 +48,8 @@ def histogram_figure(report: Report) -> Figure:
     under, over, _ = found.outside.tolist()
     limit = -np.inf if job.keep.below is None else job.keep.below
     colours = [NEAR if end <= limit else FAR for end in edges[1:].tolist()]
-    look = {"align": "edge", "edgecolor": "white", "linewidth": 0.8 if len(counts) <= FEW else 0.0}
+    width = 0.8 if len(counts) <= FEW else 0.0
+    look: dict[str, Any] = {"align": "edge", "edgecolor": "white", "linewidth": width}
     axes.bar(edges[:-1], counts, np.diff(edges), color=colours, **look)
     # What is outside of the bins stands beside them, as wide as one.
     wide = float(edges[1] - edges[0])

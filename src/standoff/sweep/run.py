@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.numbers import whole_number
 from standoff.errors import StandoffError
 from standoff.kernels.compiler.notices import QUIET
 from standoff.progress import Progress
@@ -28,9 +29,10 @@ from standoff.sweep.folder import (
     refuse_others,
     write_text,
 )
-from standoff.sweep.job import Job, load_job
+from standoff.sweep.job import Job, check_job, load_job
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.summary import Summary
+from standoff.whole_files import file_name
 
 Tell = Callable[[str], None]
 
@@ -40,7 +42,7 @@ AHEAD = 2
 
 def run_sweep(
     job: Job,
-    folder: Path,
+    folder: str | Path,
     *,
     workers: int = 1,
     cluster: str | None = None,
@@ -55,7 +57,7 @@ def run_sweep(
     Parameters
     ----------
     job : Job
-    folder : Path
+    folder : str or Path
         Made if it is not there.
     workers : int
         Processes that share the shards.
@@ -72,6 +74,8 @@ def run_sweep(
 
     Raises
     ------
+    TypeError, ValueError
+        No job, no name of a folder, or a number of workers that is not positive.
     FolderError
         If another run holds the folder, or it holds something else, or another job.
     OSError
@@ -79,6 +83,7 @@ def run_sweep(
     ModuleNotFoundError
         If a cluster is named and Dask is not installed.
     """
+    folder = _checked(job, folder, workers)
     folder.mkdir(parents=True, exist_ok=True)
     refuse_others(folder)
     with locked(folder):
@@ -98,6 +103,13 @@ def run_sweep(
         report = Report(job, merged(job, folder))
         write_text(folder / REPORT, indented(report_facts(report)))
         return report
+
+
+def _checked(job: Job, folder: str | Path, workers: int) -> Path:
+    """The folder; what cannot be used is refused."""
+    check_job(job)
+    whole_number(workers, "workers")
+    return file_name(folder)
 
 
 def merged(job: Job, folder: Path) -> Summary:
