@@ -13,7 +13,8 @@ import time
 from pathlib import Path
 
 from standoff import distances
-from standoff.sweep.job import Job, load_job
+from standoff.sweep.job import Job
+from standoff.sweep.reading import load_job
 from standoff.sweep.run import run_sweep
 
 SCENE = """version = 1

@@ -12,7 +12,7 @@ from cli.conftest import Standoff
 from cli.test_hostile_names import OBEYED, hostile, obeyed, toml
 from standoff.sweep import run as runs
 from standoff.sweep.folder import locked
-from standoff.sweep.job import load_job
+from standoff.sweep.reading import load_job
 from sweep.conftest import JOB, SCENE
 
 

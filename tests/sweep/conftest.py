@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from standoff.sweep.job import Job, load_job
+from standoff.sweep.job import Job
+from standoff.sweep.reading import load_job
 
 SCENE = """version = 1
 title = "Two ellipsoids"

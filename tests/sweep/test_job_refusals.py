@@ -10,7 +10,7 @@ import pytest
 
 from standoff.errors import StandoffError
 from standoff.scene import SceneError
-from standoff.sweep.job import load_job
+from standoff.sweep.reading import load_job
 from sweep.conftest import JOB, PARAMETERS, SCENE, TOP, Make
 
 SOBOL = '[sampler]\nkind = "sobol"\nrows = 10\n'

@@ -16,11 +16,13 @@ from typing import Any, BinaryIO
 import pytest
 
 from standoff import whole_files
+from standoff.errors import StandoffError
 from standoff.sweep import folder as folders
 from standoff.sweep import run as runs
 from standoff.sweep.estimate import estimated
 from standoff.sweep.folder import FolderError, locked, shard_file
-from standoff.sweep.job import Job, load_job
+from standoff.sweep.job import Job
+from standoff.sweep.reading import load_job
 from standoff.sweep.run import run_sweep
 from sweep.conftest import JOB, SCENE, TOP, Make
 
@@ -30,7 +32,7 @@ MANY = JOB.replace("rows = 700", "rows = 60")
 RUN = """
 import sys
 from pathlib import Path
-from standoff.sweep.job import load_job
+from standoff.sweep.reading import load_job
 from standoff.sweep.run import run_sweep
 if __name__ == "__main__":
     run_sweep(load_job(sys.argv[1]), Path(sys.argv[2]), workers=int(sys.argv[3]))
@@ -171,6 +173,20 @@ def test_damaged_shards_are_told_and_computed_again(make: Make, tmp_path: Path) 
     assert "000000001.json cannot be used, it is not a whole file: it is computed again" in told[0]
     assert "000000002.json cannot be used, its shard is 3, not 2: it is computed" in told[1]
     assert contents(folder) == before
+
+
+def test_a_shard_that_is_changed_while_the_sweep_runs(
+    make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job, folder = make(), tmp_path / "out"
+    run_sweep(job, folder)
+    monkeypatch.setattr(runs, "missing_shards", lambda *_: [])
+    shard_file(folder, 1).write_text("{}")
+    with pytest.raises(StandoffError, match=r"000000001\.json was changed: it is not a whole file"):
+        run_sweep(job, folder)
+    shard_file(folder, 1).unlink()
+    with pytest.raises(StandoffError, match=r"000000001\.json was removed: run it again"):
+        run_sweep(job, folder)
 
 
 def test_another_job_is_refused_and_what_differs_is_named(make: Make, tmp_path: Path) -> None:

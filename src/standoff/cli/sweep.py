@@ -21,7 +21,8 @@ from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.sweep.estimate import estimated
 from standoff.sweep.folder import FolderError
-from standoff.sweep.job import Job, load_job
+from standoff.sweep.job import Job
+from standoff.sweep.reading import load_job
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.run import run_sweep
 from standoff.tracking.pair_plot import plot as pair_figure

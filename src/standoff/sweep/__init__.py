@@ -7,7 +7,8 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.sweep.estimate import Estimate, estimated
     from standoff.sweep.folder import FolderError
-    from standoff.sweep.job import Bins, Job, Keep, load_job
+    from standoff.sweep.job import Bins, Job, Keep
+    from standoff.sweep.reading import load_job
     from standoff.sweep.report import Report
     from standoff.sweep.run import run_sweep
     from standoff.sweep.summary import Rows, Summary
@@ -17,7 +18,8 @@ else:
         {
             "standoff.sweep.estimate": ("Estimate", "estimated"),
             "standoff.sweep.folder": ("FolderError",),
-            "standoff.sweep.job": ("Bins", "Job", "Keep", "load_job"),
+            "standoff.sweep.job": ("Bins", "Job", "Keep"),
+            "standoff.sweep.reading": ("load_job",),
             "standoff.sweep.report": ("Report",),
             "standoff.sweep.run": ("run_sweep",),
             "standoff.sweep.summary": ("Rows", "Summary"),

@@ -12,8 +12,9 @@ from typing import Any
 from standoff.errors import StandoffError, not_installed
 from standoff.kernels.compiler.notices import QUIET
 from standoff.sweep.code import code_facts
-from standoff.sweep.folder import shard_file, write_text
-from standoff.sweep.job import Job, digest_of, load_job
+from standoff.sweep.folder import put_text, shard_file
+from standoff.sweep.job import Job, digest_of
+from standoff.sweep.reading import load_job
 from standoff.sweep.shard import computed, text_of_shard
 
 AHEAD = 2
@@ -55,7 +56,7 @@ def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str
         return
     given = os.path.abspath(job.file), job.digest, digest_of(code_facts())
     for k, text in _texts(Client, address, given, missing):
-        write_text(shard_file(folder, k), text)
+        put_text(shard_file(folder, k), text)
         yield k
 
 

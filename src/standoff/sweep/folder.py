@@ -41,7 +41,7 @@ def indented(facts: Mapping[str, Any]) -> str:
     return json.dumps(facts, indent=2, allow_nan=False, ensure_ascii=True) + "\n"
 
 
-def write_text(file: Path, text: str) -> None:
+def put_text(file: Path, text: str) -> None:
     """Write a file whole, or not at all.
 
     Raises
@@ -88,7 +88,8 @@ def locked(folder: Path) -> Iterator[None]:
             "folder",
             folder,
         ) from error
-    with (folder / LOCK).open("ab") as file:
+    file = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
@@ -99,6 +100,8 @@ def locked(folder: Path) -> Iterator[None]:
                 folder,
             ) from error
         yield
+    finally:
+        os.close(file)
 
 
 def refuse_others(folder: Path) -> None:
@@ -139,7 +142,7 @@ def prepare(folder: Path, job: Job) -> None:
     for left in (*folder.glob(".*.part"), *(folder / SHARDS).glob(".*.part")):
         left.unlink(missing_ok=True)  # of a process that was killed
     if not file.exists():
-        write_text(file, indented(wanted))  # first of all: without it, the folder is no sweep's
+        put_text(file, indented(wanted))  # first of all: without it, the folder is no sweep's
     (folder / SHARDS).mkdir(exist_ok=True)
 
 
@@ -197,7 +200,7 @@ def make_shard(job: Job, folder: Path, k: int) -> int:
         If it cannot be written, as on a full disk: then it is not there.
     """
     text = text_of_shard(job, digest_of(code_facts()), k, computed(job, k))
-    write_text(shard_file(folder, k), text)
+    put_text(shard_file(folder, k), text)
     return k
 
 

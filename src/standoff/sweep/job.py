@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,7 +22,6 @@ from standoff.sweep.parameters import Parameter, in_ranges, moved
 from standoff.sweep.sample_file import SampleFile
 from standoff.sweep.samplers import Sampler
 from standoff.tracking.many_distances import Distances, answered_rows
-from standoff.whole_files import file_name
 
 Array = NDArray[np.float64]
 
@@ -75,7 +73,7 @@ class Keep(NamedTuple):
 class Job:
     """A sweep over poses of the two bodies of a scene's pair.
 
-    `load_job` reads one from a file.
+    `standoff.sweep.load_job` reads one from a file.
 
     Attributes
     ----------
@@ -189,29 +187,3 @@ def check_job(job: Any) -> None:
     """
     if not isinstance(job, Job):
         raise StandoffTypeError(f"job is {shown(job)}: give what load_job returns.", "job", job)
-
-
-def load_job(file: str | os.PathLike[str]) -> Job:
-    """Read, check and build a job.
-
-    Parameters
-    ----------
-    file : str or path
-        A TOML file; the files that it names are relative to its folder.
-
-    Returns
-    -------
-    Job
-
-    Raises
-    ------
-    TypeError
-        If `file` is neither a string nor a path.
-    SceneError
-        If the file or its scene is missing or is not TOML, or anything in them is unknown,
-        missing, of the wrong type, not finite, or does not go together. The message names the
-        file, the key and the fix.
-    """
-    from standoff.sweep.reading import read_job
-
-    return read_job(file_name(os.fspath(file) if isinstance(file, os.PathLike) else file))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import os
 from typing import Any
 
 from standoff.scene import Scene, SceneError, load_scene
@@ -20,6 +20,7 @@ from standoff.sweep.samplers import (
     SobolSampler,
 )
 from standoff.tracking.inputs import check_pair
+from standoff.whole_files import file_name
 from standoff.wording import counted
 
 VERSION = 1
@@ -47,8 +48,28 @@ MOST_KEPT = 10_000_000
 MOST_BINS = 1_000_000
 
 
-def read_job(path: Path) -> Job:
-    """Return the job of a file; see `standoff.sweep.job.load_job`."""
+def load_job(file: str | os.PathLike[str]) -> Job:
+    """Read, check and build a job.
+
+    Parameters
+    ----------
+    file : str or path
+        A TOML file; the files that it names are relative to its folder.
+
+    Returns
+    -------
+    Job
+
+    Raises
+    ------
+    TypeError
+        If `file` is neither a string nor a path.
+    SceneError
+        If the file or its scene is missing or is not TOML, or anything in them is unknown,
+        missing, of the wrong type, not finite, or does not go together. The message names the
+        file, the key and the fix.
+    """
+    path = file_name(os.fspath(file) if isinstance(file, os.PathLike) else file)
     try:
         top = Table(toml_tables(text_of(path)), file=path)
     except SceneError as error:

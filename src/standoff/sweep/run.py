@@ -26,11 +26,14 @@ from standoff.sweep.folder import (
     make_shard,
     missing_shards,
     prepare,
+    put_text,
     refuse_others,
-    write_text,
+    shard_file,
 )
-from standoff.sweep.job import Job, check_job, load_job
+from standoff.sweep.job import Job, check_job
+from standoff.sweep.reading import load_job
 from standoff.sweep.report import Report, report_facts
+from standoff.sweep.shard import NotThisShard
 from standoff.sweep.summary import Summary
 from standoff.whole_files import file_name
 
@@ -101,7 +104,7 @@ def run_sweep(
             if progress is not None:
                 progress(done, job.rows)
         report = Report(job, merged(job, folder))
-        write_text(folder / REPORT, indented(report_facts(report)))
+        put_text(folder / REPORT, indented(report_facts(report)))
         return report
 
 
@@ -118,13 +121,18 @@ def merged(job: Job, folder: Path) -> Summary:
     Raises
     ------
     StandoffError
-        If one is missing.
+        If one is missing, or is not what was written.
     """
     found = Summary(job.keep)
     for k in range(job.shards):
-        part = kept_shard(job, folder, k)
+        try:
+            part = kept_shard(job, folder, k)
+        except NotThisShard as error:
+            raise StandoffError(
+                f"{shard_file(folder, k)} was changed: {error}", "folder"
+            ) from error
         if part is None:
-            raise StandoffError(f"shard {k} has been removed from {folder}: run it again", "folder")
+            raise StandoffError(f"{shard_file(folder, k)} was removed: run it again", "folder")
         found.add(part)
     return found
 
