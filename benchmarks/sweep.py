@@ -1,6 +1,7 @@
 """Rows a second of a sweep, with one process and with two, beside `so.distances` on the same rows.
 
-Run from the repository's root: ``python -m benchmarks.sweep [--rows 1000000] [--kind sobol]``.
+Run from the repository's root: ``python -m benchmarks.sweep [--rows 1000000] [--kind sobol]``,
+on a busy machine with ``--cpu``.
 The pair is two ellipsoids, most of them apart; rounds of the three take turns, and the best of each
 counts. Of the sweeps only the time of their shards is taken, without starting the processes.
 """
@@ -63,28 +64,36 @@ BLOCK = 8192
 """Rows of a call of `so.distances`: many more, and memory is what is measured."""
 
 
-def plain(job: Job) -> float:
-    """Time of the distances alone, their poses made before, s a row."""
-    taken = 0.0
-    for first in range(0, job.rows, BLOCK):
-        end = min(first + BLOCK, job.rows)
-        poses = job.poses(job.numbers(first, end))
+SHARDS = 6
+"""A first one for each process, and some to be timed: of 10⁵ rows and more, so that what a shard
+costs by itself, some 7 ms, is as little beside them as it is in earnest."""
 
-        began = time.perf_counter()
+
+def plain(job: Job, *, cpu: bool, with_poses: bool) -> float:
+    """Time of the distances alone, or with the making of their poses, s a row."""
+    taken = 0.0
+    clock = time.process_time if cpu else time.perf_counter
+    for first in range(0, job.rows, BLOCK):
+        numbers = job.numbers(first, min(first + BLOCK, job.rows))
+        began = clock()
+        poses = job.poses(numbers)
+        if not with_poses:
+            began = clock()
         distances(*job.bodies, *poses)
-        taken += time.perf_counter() - began
+        taken += clock() - began
     return taken / job.rows
 
 
-def swept(job: Job, workers: int) -> float:
+def swept(job: Job, workers: int, *, cpu: bool) -> float:
     """Time of a sweep, from its first shard on, s a row."""
     seen: list[tuple[float, int]] = []
+    clock = time.process_time if cpu else time.perf_counter
     with tempfile.TemporaryDirectory() as folder:
         run_sweep(
             job,
             Path(folder),
             workers=workers,
-            progress=lambda done, _: seen.append((time.perf_counter(), done)),
+            progress=lambda done, _: seen.append((clock(), done)),
         )
     # With several processes the first shards end together: from then on all of them work.
     start = 0 if workers == 1 else workers
@@ -97,18 +106,27 @@ def main() -> None:
     parser.add_argument("--rows", type=int, default=1_000_000)
     parser.add_argument("--kind", default="sobol")
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--cpu", action="store_true", help="time of the processor; one process")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "scene.toml").write_text(SCENE, encoding="utf-8")
-        text = JOB.format(kind=given.kind, rows=given.rows, shard=max(1, given.rows // 20))
+        text = JOB.format(kind=given.kind, rows=given.rows, shard=max(1, given.rows // SHARDS))
         (folder / "job.toml").write_text(text, encoding="utf-8")
         job = load_job(folder / "job.toml")
         job.distances(0, 1)
-        best = dict.fromkeys(("so.distances", "sweep, 1 process", "sweep, 2 processes"), 1e9)
+        runs = {
+            "so.distances": lambda: plain(job, cpu=given.cpu, with_poses=False),
+            "with their poses": lambda: plain(job, cpu=given.cpu, with_poses=True),
+            "sweep, 1 process": lambda: swept(job, 1, cpu=given.cpu),
+            "sweep, 2 processes": lambda: swept(job, 2, cpu=given.cpu),
+        }
+        if given.cpu:
+            del runs["sweep, 2 processes"]
+        best = dict.fromkeys(runs, float("inf"))
         for _ in range(given.rounds):
-            for told, seconds in zip(best, (plain(job), swept(job, 1), swept(job, 2)), strict=True):
-                best[told] = min(best[told], seconds)
+            for told, run in runs.items():
+                best[told] = min(best[told], run())
         for told, seconds in best.items():
             share = seconds / best["so.distances"]
             print(

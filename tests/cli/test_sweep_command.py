@@ -254,7 +254,9 @@ def test_pictures(standoff: Standoff, job: Path, tmp_path: Path) -> None:
 
 def test_the_bars_are_the_counts(job: Path, tmp_path: Path) -> None:
     report = runs.run_sweep(load_job(job), tmp_path / "out")
-    from standoff.sweep.plot import histogram_figure
+    from matplotlib.colors import to_rgba
+
+    from standoff.sweep.plot import FAR, NEAR, histogram_figure
 
     (axes,) = histogram_figure(report).axes
     heights = [bar.get_height() for bar in axes.patches]
@@ -262,5 +264,5 @@ def test_the_bars_are_the_counts(job: Path, tmp_path: Path) -> None:
     assert heights == [*report.found.bins.tolist(), *(n for n in (under, over) if n)]
     # those wholly below the length have another colour
     assert len({bar.get_facecolor() for bar in axes.patches[:5]}) == 1
-    assert axes.patches[4].get_facecolor() != axes.patches[5].get_facecolor()
-    assert axes.patches[5].get_facecolor() == axes.patches[49].get_facecolor()
+    assert axes.patches[4].get_facecolor() == to_rgba(NEAR) != to_rgba(FAR)
+    assert axes.patches[5].get_facecolor() == axes.patches[49].get_facecolor() == to_rgba(FAR)

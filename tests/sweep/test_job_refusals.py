@@ -11,6 +11,7 @@ import pytest
 from standoff.errors import StandoffError
 from standoff.scene import SceneError
 from standoff.sweep.reading import load_job
+from standoff.view.gallery import scenes_in
 from sweep.conftest import JOB, PARAMETERS, SCENE, TOP, Make
 
 SOBOL = '[sampler]\nkind = "sobol"\nrows = 10\n'
@@ -156,6 +157,14 @@ def test_scenes_that_have_no_such_pair(make: Make) -> None:
     half = "\n".join(line for line in half.splitlines() if "semi_axes" not in line)
     with pytest.raises(SceneError, match="half-space"):
         make(f"{TOP}{X}{SOBOL}", half)
+
+
+def test_a_scene_is_no_job_and_a_job_no_scene(make: Make, tmp_path: Path) -> None:
+    two = SCENE.replace("[pair]\n", '[[pairs]]\nname = "one"\n')
+    make(f'{TOP}pair = "one"\n{X}{SOBOL}', two)
+    with pytest.raises(SceneError, match=r'bodies: this is a scene, .* scene = "scene\.toml"'):
+        load_job(tmp_path / "scene.toml")
+    assert list(scenes_in(tmp_path)) == ["scene"]
 
 
 FILE = """{top}[parameters.x]

@@ -21,7 +21,7 @@ from standoff.sweep.samplers import (
 )
 from standoff.tracking.inputs import check_pair
 from standoff.whole_files import file_name
-from standoff.wording import counted
+from standoff.wording import counted, printable
 
 VERSION = 1
 """The version of the format that this library reads."""
@@ -77,6 +77,12 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     version = top.required("version", f"version = {VERSION}")
     if type(version) is not int or version != VERSION:
         raise top.error(f"is {shown(version)}, but this Standoff reads version 1", "version")
+    if "bodies" in top:
+        raise top.error(
+            "this is a scene, and a sweep's job names one: write a job with a line such as: "
+            f'scene = "{printable(path.name)}"',
+            "bodies",
+        )
     top.expect(*KEYS)
     scene = _scene(top)
     kind, table = _sampler_table(top)
