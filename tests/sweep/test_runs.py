@@ -63,10 +63,12 @@ def started(script: Path, job: Job, folder: Path, workers: int) -> subprocess.Po
     )
 
 
-def killed_after_a_while(process: subprocess.Popen[bytes], folder: Path, seconds: float) -> None:
-    """Kill a run some time after it wrote something new, if it has not ended by then."""
-    before = len(contents(folder))
-    while process.poll() is None and len(contents(folder)) <= before:
+def killed_after_a_while(
+    process: subprocess.Popen[bytes], folder: Path, seconds: float, new: str
+) -> None:
+    """Kill a run some time after it wrote a new file of a pattern, if it has not ended by then."""
+    before = len(list(folder.glob(new)))
+    while process.poll() is None and len(list(folder.glob(new))) <= before:
         time.sleep(0.002)
     time.sleep(seconds)
     process.kill()
@@ -127,7 +129,9 @@ def test_killed_at_any_moment_it_ends_with_the_same_bytes(
     folder.mkdir()
     for k in range(kills):
         process = started(script, job, folder, workers[k % len(workers)])
-        killed_after_a_while(process, folder, rng.uniform(0.0, 0.15))
+        # The first may be killed before it has a shard, the others while all workers are busy.
+        new = "shards/0*.json" if k else "*"
+        killed_after_a_while(process, folder, rng.uniform(0.0, 0.15), new)
         early += not (folder / "report.json").exists()
         if (folder / "report.json").exists():  # it was done: some of it is to be done again
             for number in rng.sample(range(job.shards), 40):
@@ -136,7 +140,9 @@ def test_killed_at_any_moment_it_ends_with_the_same_bytes(
         deadline = time.monotonic() + 60.0
         while not gone(process.pid) and time.monotonic() < deadline:
             time.sleep(0.01)
-        assert gone(process.pid), "workers outlive the process that was killed"
+        if not gone(process.pid):
+            os.killpg(process.pid, signal.SIGKILL)
+            pytest.fail("workers outlive the process that was killed")
     assert early > 0
     told: list[str] = []
     run_sweep(job, folder, tell=told.append)

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from standoff.errors import StandoffError, not_installed
-from standoff.kernels.compiler.notices import QUIET
 from standoff.sweep.code import code_facts
 from standoff.sweep.folder import put_text, shard_file
 from standoff.sweep.job import Job, digest_of
@@ -94,7 +93,6 @@ def shard_text(file: str, job_digest: str, code_digest: str, k: int) -> tuple[in
     StandoffError
         If the job or the library here is another one.
     """
-    os.environ[QUIET] = "1"
     if digest_of(code_facts()) != code_digest:
         raise StandoffError(
             f"a worker has another library, {code_facts()}: install the same versions everywhere",
