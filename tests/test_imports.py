@@ -28,7 +28,7 @@ LAWS = {
     *(f"standoff.tracking{part}" for part in ("", ".laws", ".law_options")),
 }
 COMMANDS = (
-    *("track", "distance", "impact", "clearance", "check", "automaton"),
+    *("track", "distance", "impact", "clearance", "check", "automaton", "sweep"),
     *("paper", "soak", "accuracy", "warmup"),
 )
 STUDIES = ("paper", "soak", "accuracy")
@@ -152,7 +152,7 @@ def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     given = [*command.split(), "--help"]
     modules = loaded(f"from standoff.cli import main\nmain({given})")
     parts = ("", ".added", ".arguments", ".entry", ".errors", ".option_groups", ".overview")
-    more = (".robot_arguments", ".terminal")
+    more = (".robot_arguments", ".sweep_arguments", ".terminal")
     command_line = {f"standoff.cli{part}" for part in (*parts, *more)} | LAWS
     assert {name for name in modules if packages({name}) == {"standoff"}} == ROOT | command_line
     shown = STUDIES if not command else [name for name in STUDIES if name == command]
@@ -193,7 +193,7 @@ def test_every_package_that_should_imports_on_demand() -> None:
     names = (
         *("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking"),
         *("automaton", "impact", "points", "recording", "simulation", "voronoi"),
-        *("devices", "servo", "view", "world", "robots", "solids", "cad"),
+        *("devices", "servo", "view", "world", "robots", "solids", "cad", "sweep"),
     )
     assert set(FILES) == {name if name == "standoff" else f"standoff.{name}" for name in names}
 

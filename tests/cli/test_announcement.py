@@ -21,6 +21,9 @@ SAID = {
     "clearance s.toml --motion": (
         "finding the clearance of all pairs of s.toml over its motion ..."
     ),
+    "sweep j.toml -o f": "sweeping j.toml ...",
+    "sweep j.toml --estimate": "estimating j.toml ...",
+    "sweep j.toml --row 7": "computing row 7 of j.toml ...",
     "check s.toml": "checking s.toml ...",
     "automaton s.toml": "finding the modes of the pairs of s.toml ...",
     "paper": "making all figures and animations of the paper into standoff-paper ...",

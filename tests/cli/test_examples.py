@@ -19,7 +19,10 @@ Standoff = Callable[..., Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WORLDS = ("fits", "shelves")
 FITS = "fits-allowed"
-SCENES = [file for file in sorted(EXAMPLES.glob("*.toml")) if file.stem not in (*WORLDS, FITS)]
+SWEEP = "sweep"
+SCENES = [
+    file for file in sorted(EXAMPLES.glob("*.toml")) if file.stem not in (*WORLDS, FITS, SWEEP)
+]
 
 
 def test_there_are_examples() -> None:
@@ -100,3 +103,10 @@ def test_demo_motion_is_what_its_script_writes(tmp_path: Path) -> None:
     again = np.loadtxt(tmp_path / "again.tum")
     # To the last decimal that is written: libm differs between machines by a rounding unit.
     np.testing.assert_allclose(np.loadtxt(EXAMPLES / "hand_motion.tum"), again, atol=2e-6)
+
+
+def test_the_sweep_finds_rows_that_are_too_near(standoff: Standoff, tmp_path: Path) -> None:
+    ended = standoff("sweep", EXAMPLES / f"{SWEEP}.toml", "-o", tmp_path / "out")
+    assert ended.code == 3
+    assert "100 000 of 100 000 rows, 100 %" in ended.out
+    assert "100 rows are not proven to be 0.001 m apart" in ended.out

@@ -15,6 +15,7 @@ from standoff.cli.arguments import (
     RobotCommand,
     ServoCommand,
     SimulateCommand,
+    SweepCommand,
     TrackCommand,
     ViewCommand,
     WarmupCommand,
@@ -60,9 +61,13 @@ def _doing(command: Command) -> str:
 
 
 def _doing_without_a_scene(
-    command: RobotCommand | AddedCommand | WarmupCommand | LibraryCommand,
+    command: RobotCommand | SweepCommand | AddedCommand | WarmupCommand | LibraryCommand,
 ) -> str:
     match command:
+        case SweepCommand():
+            if command.row is not None:
+                return f"computing row {command.row} of {shown(command.job)}"
+            return f"{'estimating' if command.estimate else 'sweeping'} {shown(command.job)}"
         case RobotCommand():
             return f"reading {shown(command.model)}"
         case WarmupCommand():

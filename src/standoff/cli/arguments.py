@@ -35,6 +35,7 @@ from standoff.cli.option_groups import (
 from standoff.cli.overview import overview, unknown_command
 from standoff.cli.robot_arguments import CertifyCommand as CertifyCommand
 from standoff.cli.robot_arguments import RobotCommand as RobotCommand
+from standoff.cli.sweep_arguments import SweepCommand as SweepCommand
 from standoff.cli.terminal import tell
 
 
@@ -319,6 +320,7 @@ Command = (
     | ViewCommand
     | RobotCommand
     | CertifyCommand
+    | SweepCommand
     | ServoCommand
     | WarmupCommand
     | LibraryCommand
@@ -336,6 +338,7 @@ OWN: dict[str, type] = {
     "view": ViewCommand,
     "robot": RobotCommand,
     "certify": CertifyCommand,
+    "sweep": SweepCommand,
     "servo": ServoCommand,
     "warmup": WarmupCommand,
     "c-library": LibraryCommand,

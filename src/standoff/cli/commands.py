@@ -15,6 +15,7 @@ from standoff.cli.arguments import (
     RobotCommand,
     ServoCommand,
     SimulateCommand,
+    SweepCommand,
     TrackCommand,
     ViewCommand,
     WarmupCommand,
@@ -78,9 +79,13 @@ def run(command: Command) -> int:
 
 
 def _run_without_a_scene(
-    command: RobotCommand | WarmupCommand | LibraryCommand | AddedCommand,
+    command: RobotCommand | SweepCommand | WarmupCommand | LibraryCommand | AddedCommand,
 ) -> int:
     match command:
+        case SweepCommand():
+            from standoff.cli.sweep import run_sweep_command
+
+            return run_sweep_command(command)
         case RobotCommand():
             from standoff.cli.robot import run_robot
 

@@ -1,0 +1,158 @@
+"""``standoff sweep``: a pair at very many poses; totals, a histogram and the worst rows."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from standoff.cli.errors import CommandError, ExitCode, MissingExtra, WriteError
+from standoff.cli.facts import json_text
+from standoff.cli.output import (
+    PLOT_ENDINGS,
+    check_target,
+    kind_of_picture,
+    make_folder,
+    write_whole,
+)
+from standoff.cli.progress import progress_bar
+from standoff.cli.sweep_arguments import SweepCommand
+from standoff.cli.sweep_lines import estimate_lines, report_lines, row_lines
+from standoff.cli.terminal import tell
+from standoff.errors import StandoffError
+from standoff.sweep.estimate import estimated
+from standoff.sweep.folder import FolderError
+from standoff.sweep.job import Job
+from standoff.sweep.reading import load_job
+from standoff.sweep.report import Report, report_facts
+from standoff.sweep.run import run_sweep
+from standoff.tracking.pair_plot import plot as pair_figure
+
+JSON_ROWS = 10
+"""Rows of each list that ``--json`` prints; report.json has all."""
+
+
+def run_sweep_command(command: SweepCommand) -> int:
+    """Run a sweep, or go on with it; the exit code says whether all rows keep what is asked.
+
+    Raises
+    ------
+    SceneError, CommandError
+        The job, an option or the folder is not usable.
+    WriteError
+        A file could not be written.
+    """
+    _check(command)
+    job = load_job(command.job)
+    _check_plot(command, job)
+    try:
+        if command.row is not None:
+            return _row(command, job, command.row)
+        if command.estimate:
+            return _estimate(command, job)
+        return _sweep(command, job)
+    except FolderError as error:
+        raise CommandError(f"-o {error}") from error
+    except (StandoffError, ModuleNotFoundError) as error:
+        raise CommandError(f"{command.job}: {error}") from error
+
+
+def _check(command: SweepCommand) -> None:
+    if command.workers < 1:
+        raise CommandError(f"--workers: must be 1 or more, got {command.workers}")
+    if command.cluster is not None and command.workers != 1:
+        raise CommandError("--cluster and --workers: the cluster has its own; leave --workers out")
+    alone = "--estimate" if command.estimate else "--row"
+    if command.estimate and command.row is not None:
+        raise CommandError("--estimate and --row: give one of them")
+    if command.estimate or command.row is not None:
+        if command.output is not None:
+            raise CommandError(f"-o: {alone} writes nothing; leave it out")
+    elif command.output is None or not command.output.name:
+        raise CommandError("-o: name the folder for shards and report, such as: -o swept")
+
+
+def _check_plot(command: SweepCommand, job: Job) -> None:
+    """Refuse a picture that could not be drawn or written afterwards."""
+    if command.plot is None:
+        return
+    if command.estimate:
+        raise CommandError("--plot: --estimate writes nothing; leave it out")
+    check_target(command.plot, "--plot", PLOT_ENDINGS)
+    if command.row is None and job.keep.bins is None:
+        raise CommandError(
+            f"--plot: {command.job} keeps no histogram; add to [keep] a line such as: "
+            "histogram = { from = 0.0, to = 1.0, bins = 50 }"
+        )
+    try:
+        import standoff.sweep.plot  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name), "plot") from error
+
+
+def _draw(command: SweepCommand, figure: Any) -> None:
+    target = command.plot
+    assert target is not None  # else nothing is drawn
+    ending = kind_of_picture(target)
+    write_whole({target: lambda file: figure.savefig(file, format=ending)})
+
+
+def _row(command: SweepCommand, job: Job, row: int) -> int:
+    if not 0 <= row < job.rows:
+        raise CommandError(f"--row: the job has rows 0 to {job.rows - 1}, got {row}")
+    numbers = job.numbers(row, row + 1)
+    found = job.distances(row, row + 1)
+    answer = found[0]
+    if command.plot is not None:
+        _draw(command, pair_figure(*job.bodies, answer, unit=job.scene.length_unit))
+    if command.json:
+        facts: dict[str, Any] = {"row": row}
+        facts["parameters"] = dict(zip(job.columns, numbers[0].tolist(), strict=True))
+        tell(json_text(facts | answer.as_dict()))
+    else:
+        tell("\n".join(row_lines(job, row, numbers[0], found)))
+    return ExitCode.DONE if answer.certified else ExitCode.NOT_CERTIFIED
+
+
+def _estimate(command: SweepCommand, job: Job) -> int:
+    found = estimated(job, command.workers)
+    if command.json:
+        tell(json_text(found._asdict()))
+    else:
+        tell("\n".join(estimate_lines(job, found)))
+    return ExitCode.DONE
+
+
+def _sweep(command: SweepCommand, job: Job) -> int:
+    folder = command.output
+    assert folder is not None  # as `_check` has seen
+    make_folder(folder, "-o")
+    try:
+        with progress_bar("sweeping") as progress:
+            report = run_sweep(
+                job,
+                folder,
+                workers=command.workers,
+                cluster=command.cluster,
+                progress=progress,
+                tell=lambda line: tell(f"standoff: {line}", error=True),
+            )
+    except OSError as error:
+        raise WriteError(
+            f"{folder}: {error}; what is whole stays: the same command goes on from there"
+        ) from error
+    except KeyboardInterrupt:
+        tell("standoff: interrupted; the same command goes on where it was", error=True)
+        return ExitCode.INTERRUPTED
+    if command.plot is not None:
+        from standoff.sweep.plot import histogram_figure
+
+        _draw(command, histogram_figure(report))
+    _print(command, report, folder)
+    return ExitCode.DONE if report.holds else ExitCode.NOT_CERTIFIED
+
+
+def _print(command: SweepCommand, report: Report, folder: Path) -> None:
+    if command.json:
+        tell(json_text(report_facts(report, JSON_ROWS) | {"folder": str(folder)}))
+    else:
+        tell("\n".join(report_lines(report, folder)))

@@ -1,0 +1,195 @@
+"""What ``standoff sweep`` prints for a reader at a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.cli.summary import line, share_text, vector_text
+from standoff.sweep.estimate import Estimate
+from standoff.sweep.folder import REPORT
+from standoff.sweep.job import Job
+from standoff.sweep.parameters import UNIFORM, Parameter
+from standoff.sweep.report import Report, numbers_of
+from standoff.sweep.summary import Listed, Rows, Spread
+from standoff.tracking.many_distances import Distances
+from standoff.tracking.proximity import shown_size
+from standoff.tracking.status import BY_NUMBER
+from standoff.wording import counted
+
+FIRST_ROWS = 5
+"""Worst rows that are printed; the report has all that the job keeps."""
+
+BAR = 40
+"""Characters of the longest bar of the histogram."""
+
+MOST_BARS = 24
+"""Bins that are printed: more are put together, a whole number in each."""
+
+TIMES = ((86400.0, "d"), (3600.0, "h"), (60.0, "min"))
+SIZES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
+
+Array = NDArray[np.float64]
+
+
+def _grouped(number: int) -> str:
+    return f"{number:,}".replace(",", " ")
+
+
+def _what(parameter: Parameter) -> str:
+    what = "uniform rotation" if parameter.what == UNIFORM else parameter.what
+    return f"{what} of {parameter.moves}"
+
+
+def _head(job: Job) -> list[str]:
+    a, b = job.scene.pair
+    ways = ", ".join(f"{p.name} ({_what(p)})" for p in job.parameters)
+    seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
+    return [
+        line("sweep", f"{job.title}: {a} and {b}"),
+        line("parameters", ways),
+        line("rows", f"{_grouped(job.rows)}, {job.kind}{seed}"),
+    ]
+
+
+def report_lines(report: Report, folder: Path) -> list[str]:
+    """Return the lines that sum up a sweep."""
+    job, found = report.job, report.found
+    unit = job.scene.length_unit
+    statuses = zip(BY_NUMBER, found.statuses.tolist(), strict=True)
+    told = ", ".join(f"{_grouped(n)} {status.name}" for status, n in statuses if n)
+    lines = [
+        *_head(job),
+        line("status", told),
+        line("certified", _certified(report)),
+        line("distance", _spread(found.distance, unit)),
+        line("lower bound", _spread(found.lower_bound, unit)),
+        *_histogram(report),
+        *_worst(job, found.worst),
+    ]
+    if job.keep.below is not None:
+        lines.append(line("below", _below(found.below, job.keep.below, unit)))
+    return [*lines, line("wrote", str(folder / REPORT))]
+
+
+def _certified(report: Report) -> str:
+    found = report.found
+    told = f"{_grouped(found.certified)} of {_grouped(found.rows)} rows, "
+    told += share_text(found.certified, found.rows)
+    missed = found.uncertified
+    if missed.count:
+        first = ", ".join(map(str, missed.rows.row[:FIRST_ROWS].tolist()))
+        told += f"; not certified: {first}{', ...' if missed.count > FIRST_ROWS else ''}"
+    return told
+
+
+def _spread(spread: Spread, unit: str) -> str:
+    if not spread.count:
+        return "none"
+    mean = spread.sum / spread.count
+    return (
+        f"{spread.least:.6g} {unit} (row {spread.least_row}) to {spread.most:.6g} {unit} "
+        f"(row {spread.most_row}), mean {mean:.6g} {unit}"
+    )
+
+
+def _histogram(report: Report) -> list[str]:
+    bins = report.job.keep.bins
+    if bins is None:
+        return []
+    # A divisor of the number of bins, so that all bars are of equally wide ones.
+    together = next(
+        n for n in range(-(-bins.number // MOST_BARS), bins.number + 1) if bins.number % n == 0
+    )
+    counts = report.found.bins.reshape(-1, together).sum(axis=1)
+    edges = bins.edges[::together]
+    under, over, without = report.found.outside.tolist()
+    rows = [(f"below {bins.low:g}", under)]
+    rows += [(f"{low:.6g} ...", n) for low, n in zip(edges[:-1], counts.tolist(), strict=True)]
+    rows += [(f"{bins.high:g} and more", over)]
+    rows += [("no distance", without)] if without else []
+    most = max(n for _, n in rows) or 1
+    width = max(len(name) for name, _ in rows)
+    return [
+        line(
+            "histogram" if k == 0 else "",
+            f"{name:>{width}} {'█' * round(BAR * n / most):<{BAR}} {_grouped(n)}".rstrip(),
+        )
+        for k, (name, n) in enumerate(rows)
+    ]
+
+
+def _worst(job: Job, rows: Rows) -> list[str]:
+    first = rows.at(slice(FIRST_ROWS))
+    numbers = numbers_of(job, first.row.tolist())
+    unit = job.scene.length_unit
+    lines = []
+    for k, (row, distance) in enumerate(zip(first.row.tolist(), first.distance, strict=True)):
+        status = BY_NUMBER[int(first.status[k])].name
+        text = f"row {row}: {distance:.6g} {unit}, {status}, {_named(job, numbers[k])}"
+        lines.append(line("worst" if k == 0 else "", text))
+    return lines
+
+
+def _named(job: Job, numbers: Array) -> str:
+    pairs = zip(job.columns, numbers.tolist(), strict=True)
+    return ", ".join(f"{name} {number:.6g}" for name, number in pairs)
+
+
+def _below(below: Listed, length: float, unit: str) -> str:
+    if not below.count:
+        return f"no row: all are proven to be {length:g} {unit} or more apart"
+    rows = counted(below.count, "row is", "rows are")
+    told = f"{rows} not proven to be {length:g} {unit} apart"
+    listed = len(below.rows.row)
+    return told if listed == below.count else f"{told}; the report lists the first {listed}"
+
+
+def row_lines(job: Job, row: int, numbers: Array, found: Distances) -> list[str]:
+    """Return the lines for one row."""
+    answer = found[0]
+    unit, size = job.scene.length_unit, shown_size(answer)
+    (a, b), lines = job.scene.pair, [line("sweep", job.title), line("row", f"{row} of {job.rows}")]
+    at = 0
+    for p in job.parameters:
+        values = " ".join(f"{x:.17g}" for x in numbers[at : at + p.width].tolist())
+        at += p.width
+        own = f" {unit if not p.unit and p.width == 1 else p.unit}".rstrip()
+        lines.append(line(p.name, f"{values}{own}, {_what(p)}"))
+    for name, poses in zip((a, b), found.poses, strict=True):
+        rows = [" ".join(f"{x:.9g}" for x in part) for part in poses[0][:3].tolist()]
+        lines += [line(f"pose {name}" if k == 0 else "", text) for k, text in enumerate(rows)]
+    return [
+        *lines,
+        line("distance", f"{answer.distance:.17g} {unit}"),
+        line("lower bound", f"{answer.lower_bound:.17g} {unit}"),
+        line("upper bound", f"{answer.upper_bound:.17g} {unit}"),
+        line("points", f"{vector_text(answer.point_a, size)} {unit} on {a}, {answer.feature_a}"),
+        line("", f"{vector_text(answer.point_b, size)} {unit} on {b}, {answer.feature_b}"),
+        line("normal", f"{vector_text(answer.normal, 1.0)} from {a} to {b}"),
+        line("status", f"{answer.status.name}: {answer.status.advice}"),
+    ]
+
+
+def estimate_lines(job: Job, found: Estimate) -> list[str]:
+    """Return the lines of what a sweep will take."""
+    processes = counted(found.processes, "process", "processes")
+    lines = [
+        *_head(job),
+        line("shards", f"{_grouped(found.shards)} of {_grouped(job.shard_rows)} rows"),
+        line("tried", f"{found.tried} rows, {found.row_seconds * 1e6:.3g} µs each"),
+        line("time", f"{_scaled(found.seconds, TIMES, 's')} with {processes}"),
+        line("disk", f"{_scaled(found.size, SIZES, 'B')} in shards"),
+    ]
+    if found.uncertified:
+        lines.append(line("certified", f"{found.uncertified} of the tried rows are not"))
+    return lines
+
+
+def _scaled(number: float, units: tuple[tuple[float, str], ...], smallest: str) -> str:
+    for size, unit in units:
+        if number >= size:
+            return f"{number / size:.3g} {unit}"
+    return f"{number:.3g} {smallest}"

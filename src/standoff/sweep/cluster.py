@@ -1,0 +1,108 @@
+"""Shards computed on a cluster of Dask; their texts come back, and one process writes the files."""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from standoff.errors import StandoffError, not_installed
+from standoff.sweep.code import code_facts
+from standoff.sweep.folder import put_text, shard_file
+from standoff.sweep.job import Job, digest_of
+from standoff.sweep.reading import load_job
+from standoff.sweep.shard import computed, text_of_shard
+
+AHEAD = 2
+"""Shards per thread of the cluster that are handed out before they are asked for."""
+
+_jobs: dict[tuple[str, str], Job] = {}
+_reading = threading.Lock()
+"""A worker's own: its threads share what it has read."""
+
+
+def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str) -> Iterator[int]:
+    """Make shards on a cluster; yields each one's number when it is there.
+
+    Parameters
+    ----------
+    job : Job
+        Its file, and what that names, must be at the same path on all machines.
+    folder : Path
+        Of this machine alone.
+    missing : sequence of int
+    address : str
+        Of the scheduler, such as ``tcp://10.0.0.5:8786``.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If Dask is not installed.
+    StandoffError
+        If a worker cannot read the job, or has another job or library.
+    OSError
+        If the scheduler cannot be reached, or is lost.
+    """
+    try:
+        from distributed import Client
+    except ModuleNotFoundError as error:
+        told = not_installed("distributed", "cluster")
+        raise ModuleNotFoundError(told, name="distributed") from error
+    if not missing:
+        return
+    given = os.path.abspath(job.file), job.digest, digest_of(code_facts())
+    for k, text in _texts(Client, address, given, missing):
+        put_text(shard_file(folder, k), text)
+        yield k
+
+
+def _texts(
+    client_of: Any, address: str, given: tuple[str, str, str], missing: Sequence[int]
+) -> Iterator[tuple[int, str]]:
+    """Numbers and texts of shards, as they come."""
+    from distributed import as_completed
+
+    left = list(reversed(missing))
+    try:
+        with client_of(address) as client:
+            room = AHEAD * max(1, sum(client.nthreads().values()))
+            ask = partial(client.submit, shard_text, *given, pure=False)
+            waiting = as_completed([ask(left.pop()) for _ in missing[:room]])
+            for future in waiting:
+                found = future.result()
+                if left:
+                    waiting.add(ask(left.pop()))
+                yield found
+    except (StandoffError, GeneratorExit):
+        raise
+    except Exception as error:
+        # Dask tells of a lost scheduler by errors of many classes.
+        raise OSError(
+            f"the cluster at {address} failed or was lost ({type(error).__name__}: {error})"
+        ) from error
+
+
+def shard_text(file: str, job_digest: str, code_digest: str, k: int) -> tuple[int, str]:
+    """Return a shard's number and the text of its file, computed where this is called.
+
+    Raises
+    ------
+    StandoffError
+        If the job or the library here is another one.
+    """
+    if digest_of(code_facts()) != code_digest:
+        raise StandoffError(
+            f"a worker has another library, {code_facts()}: install the same versions everywhere",
+            "cluster",
+        )
+    with _reading:
+        job = _jobs.get((file, job_digest))
+        if job is None:
+            job = load_job(file)
+            if job.digest != job_digest:
+                raise StandoffError(f"a worker finds another job in {file}", "cluster")
+            _jobs[file, job_digest] = job
+    return k, text_of_shard(job, code_digest, k, computed(job, k))

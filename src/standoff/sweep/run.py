@@ -1,0 +1,217 @@
+"""A sweep run, or gone on with: shards computed by processes, then merged in their order."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from standoff.checks.numbers import whole_number
+from standoff.errors import StandoffError
+from standoff.kernels.compiler.notices import QUIET
+from standoff.progress import Progress
+from standoff.sweep.cluster import made_on_cluster
+from standoff.sweep.folder import (
+    REPORT,
+    indented,
+    kept_shard,
+    locked,
+    make_shard,
+    missing_shards,
+    prepare,
+    put_text,
+    refuse_others,
+    shard_file,
+)
+from standoff.sweep.job import Job, check_job
+from standoff.sweep.reading import load_job
+from standoff.sweep.report import Report, report_facts
+from standoff.sweep.shard import NotThisShard
+from standoff.sweep.summary import Summary
+from standoff.whole_files import file_name
+
+Tell = Callable[[str], None]
+
+AHEAD = 2
+"""Shards per process that are handed out before they are asked for."""
+
+
+def run_sweep(
+    job: Job,
+    folder: str | Path,
+    *,
+    workers: int = 1,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+    tell: Tell = lambda line: None,
+) -> Report:
+    """Compute a sweep's shards that are not in a folder yet, and write the report.
+
+    Stopped at any moment, it goes on where it was when it is run again. The files of the folder
+    are the same, byte for byte, for any number of workers and of stops.
+
+    Parameters
+    ----------
+    job : Job
+    folder : str or Path
+        Made if it is not there.
+    workers : int
+        Processes that share the shards.
+    cluster : str, optional
+        Address of Dask's scheduler, whose workers share them in place of processes.
+    progress : callable, optional
+        Called with the rows done and the rows in all.
+    tell : callable
+        Called with a line about each file that could not be used.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    TypeError, ValueError
+        No job, no name of a folder, or a number of workers that is not positive.
+    FolderError
+        If another run holds the folder, or it holds something else, or another job.
+    OSError
+        If a file cannot be written, as on a full disk, or the cluster is lost; whole shards stay.
+    ModuleNotFoundError
+        If a cluster is named and Dask is not installed.
+    """
+    folder = _checked(job, folder, workers)
+    folder.mkdir(parents=True, exist_ok=True)
+    refuse_others(folder)
+    with locked(folder):
+        prepare(folder, job)
+        missing = missing_shards(job, folder, tell)
+        done = job.rows - sum(_length(job, k) for k in missing)
+        if progress is not None:
+            progress(done, job.rows)
+        if cluster is None:
+            made = _made(job, folder, missing, workers)
+        else:
+            made = made_on_cluster(job, folder, missing, cluster)
+        for k in made:
+            done += _length(job, k)
+            if progress is not None:
+                progress(done, job.rows)
+        report = Report(job, merged(job, folder))
+        put_text(folder / REPORT, indented(report_facts(report)))
+        return report
+
+
+def _checked(job: Job, folder: str | Path, workers: int) -> Path:
+    """The folder; what cannot be used is refused."""
+    check_job(job)
+    whole_number(workers, "workers")
+    return file_name(folder)
+
+
+def merged(job: Job, folder: Path) -> Summary:
+    """Return what is kept of all rows, from the files of all shards.
+
+    Raises
+    ------
+    StandoffError
+        If one is missing, or is not what was written.
+    """
+    found = Summary(job.keep)
+    for k in range(job.shards):
+        try:
+            part = kept_shard(job, folder, k)
+        except NotThisShard as error:
+            raise StandoffError(
+                f"{shard_file(folder, k)} was changed: {error}", "folder"
+            ) from error
+        if part is None:
+            raise StandoffError(f"{shard_file(folder, k)} was removed: run it again", "folder")
+        found.add(part)
+    return found
+
+
+def _length(job: Job, k: int) -> int:
+    first, end = job.shard(k)
+    return end - first
+
+
+def _made(job: Job, folder: Path, missing: Sequence[int], workers: int) -> Iterator[int]:
+    """Make shards; yields each one's number when it is there."""
+    if workers == 1 or len(missing) < 2:
+        for k in missing:
+            yield make_shard(job, folder, k)
+        return
+    # Here, so that one process compiles what is not compiled yet.
+    first, _ = job.shard(missing[0])
+    job.distances(first, first + 1)
+    given = os.path.abspath(job.file), job.digest, os.path.abspath(folder)
+    with _processes(min(workers, len(missing))) as pool:
+        left, running = list(reversed(missing)), set[Future[int]]()
+        while left or running:
+            while left and len(running) < AHEAD * workers:
+                running.add(pool.submit(_work, *given, left.pop()))
+            ended, running = wait(running, return_when=FIRST_COMPLETED)
+            for each in ended:
+                yield _result(each)
+
+
+def _result(ended: Future[int]) -> int:
+    try:
+        return ended.result()
+    except BrokenProcessPool as error:
+        raise OSError(
+            "a worker's process ended by itself, as when memory runs out; run the same command "
+            "again to go on, with fewer --workers if it happens again"
+        ) from error
+
+
+@contextmanager
+def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
+    # spawn: a fork would copy the locks of the threads of Numba and of the progress bar
+    pool = ProcessPoolExecutor(
+        workers,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_begin,
+    )
+    try:
+        yield pool
+    except BaseException:
+        # A shard that is half done is given up: its file is not there.
+        for process in list((pool._processes or {}).values()):
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+_jobs: dict[str, Job] = {}
+"""A worker's own, by digest."""
+
+
+def _begin() -> None:
+    """Make a new process a worker, which ends with its parent."""
+    os.environ[QUIET] = "1"
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt ends
+    threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    parent: Any = multiprocessing.parent_process()
+    parent.join()
+    os._exit(1)
+
+
+def _work(file: str, digest: str, folder: str, k: int) -> int:
+    if digest not in _jobs:
+        job = load_job(file)
+        if job.digest != digest:
+            raise StandoffError(f"{file} was changed while the sweep began: run it again", "job")
+        _jobs[digest] = job
+    return make_shard(_jobs[digest], Path(folder), k)
