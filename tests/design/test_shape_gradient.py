@@ -192,7 +192,7 @@ def test_a_vertex_of_a_tilted_box_is_told_one_sided_or_smooth_and_flat_contact_p
     [
         (lambda: so.Design(3, radius=1.0), "give a function"),
         (lambda: so.Design(so.shapes.sphere), "no parameter"),
-        (lambda: so.Design(so.shapes.sphere, radius=np.nan), "radius = nan"),
+        (lambda: so.Design(so.shapes.sphere, radius=np.nan), "radius has a NaN"),
         (lambda: so.Design(lambda r: r, r=1.0).body, "must return a Body"),
         (lambda: so.Design(so.shapes.sphere, radius=1.0).changed(size=2.0), "'size' is no"),
     ],

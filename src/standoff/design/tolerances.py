@@ -9,3 +9,6 @@ WEIGHTS = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
 ROUGH = 1e-3
 """Of a rate (or of the body's size over the parameter): differences of second and of fourth order
 agree to 1e-6 of it where a boundary moves smoothly, and not at all where it jumps."""
+SAME_PLACE = 1e-6
+"""Of a body's size: farther from the place that an answer names than this its witness point is of
+another body. Solids tell witness points to 1e-9 of their size or better."""
