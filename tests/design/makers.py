@@ -23,7 +23,9 @@ def arch(control, weight, depth):
     weights, across = np.array([1.0, weight, 1.0]), np.array([0.0, 0.5 * depth, 0.0])
     both = np.stack([weights, weights], axis=1)
     caps = [
-        BezierPatch(np.stack([bow + side, chord + side], axis=1), np.stack([weights, np.ones(3)], 1))
+        BezierPatch(
+            np.stack([bow + side, chord + side], axis=1), np.stack([weights, np.ones(3)], 1)
+        )
         for side in (across, -across)
     ]
     back = BezierPatch(np.stack([bow - across, bow + across], axis=1), both)
@@ -39,5 +41,5 @@ def dome(height):
 
 
 def ring(major, minor):
-    """A torus, as a solid."""
-    return so.Solid.from_patches([Torus(major, minor)], name="ring")
+    """A torus: a boundary, without a solid's search for where it crosses itself."""
+    return so.bodies.Boundary.from_patches([Torus(major, minor, v0=-np.pi, v1=np.pi)], name="ring")

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.boundary import Boundary
-from standoff.bodies.features import Feature
+from standoff.bodies.features import Feature, charts_of
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shown
+from standoff.design.alignment import Ints, numbers_in
 from standoff.design.points import Group, group_of, points_of
-from standoff.design.tolerances import NODES, ROUGH, STEP, WEIGHTS
+from standoff.design.tolerances import NODES, NOTHING, ROUGH, STEP, UNBOUNDED_SIZE, WEIGHTS
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.solid_model import SolidModel
@@ -71,6 +72,7 @@ class Design:
         if not parameters:
             raise StandoffError("A design has no parameter: give at least one, by name.")
         self.make = make
+        self._numbers: dict[int, Ints | None] = {}
         self.parameters = {name: _numbers(value, name) for name, value in parameters.items()}
 
     @cached_property
@@ -143,15 +145,34 @@ class Design:
         for k, (bodies, step) in enumerate(zip(self._neighbours[name], steps, strict=True)):
             for group in groups:
                 along = normals[group.rows]
-                heights = [heights_of(body, group, along) for body in bodies]
+                heights = [
+                    heights_of(body, self._there(name, body, group), along) for body in bodies
+                ]
                 rates[k, group.rows] = self._sloped(name, np.array(heights), float(step))
         return rates.T.reshape(len(normals), *np.shape(value))
+
+    def _there(self, name: str, body: Made, group: Group) -> Group:
+        """The same places on a neighbour, whose planes and lines may have other numbers."""
+        if id(body) not in self._numbers:
+            given, own = boundary_of(body), boundary_of(self.body)
+            planar = isinstance(given, PlanarSolid) or isinstance(own, PlanarSolid)
+            self._numbers[id(body)] = None if planar else numbers_in(given, own)
+        numbers = self._numbers[id(body)]
+        if numbers is None or numbers[group.feature] == group.feature:
+            return group
+        number = int(numbers[group.feature])
+        if number < 0:
+            raise StandoffError(
+                f"No derivative by {name}: of a neighbour no feature is that of the answer."
+            )
+        chart = charts_of(boundary_of(body), number)[0] if group.chart >= 0 else -1
+        return group._replace(feature=number, chart=chart)
 
     def _sloped(self, name: str, heights: Array, step: float) -> Array:
         """(m,) slopes, from the heights (NODES, m) of a component's neighbours."""
         rates: Array = np.array(WEIGHTS) @ heights / step
         coarse = 0.5 * (heights[2] - heights[1]) / step
-        rough = np.abs(rates - coarse) > ROUGH * (np.abs(rates) + self.body.size * STEP / step)
+        rough = np.abs(rates - coarse) > ROUGH * (np.abs(rates) + self._size * STEP / step)
         if rough.any():
             raise StandoffError(
                 f"The boundary does not move smoothly with {name}: differences of second and of "
@@ -161,8 +182,12 @@ class Design:
 
     def _steps(self, value: float | Array) -> Array:
         """(components,) of the differences."""
-        size = np.abs(np.ravel(value))
-        return STEP * np.where(size > 0.0, size, self.body.size)
+        scale = np.abs(np.ravel(value))
+        return STEP * np.where(scale > NOTHING * self._size, scale, self._size)
+
+    @property
+    def _size(self) -> float:
+        return self.body.size if np.isfinite(self.body.size) else UNBOUNDED_SIZE
 
     @cached_property
     def _neighbours(self) -> Mapping[str, list[list[Made]]]:

@@ -144,9 +144,9 @@ def _of_one(answer: Proximity | SolidProximity, designs: Designs) -> ShapeGradie
         outward = flip * SIGNS[side] * (pose.rotation.T @ answer.normal)
         witness = pose.rotation.T @ (getattr(answer, f"point_{side}") - pose.translation)
         group = _group(answer, side, design, (witness, outward))
-        if smoothness is Smoothness.UNDEFINED:
-            flip = np.nan
-        rates = design.rates_of([group], outward[None])
+        # an answer that is not at an optimum has a normal along which places do not move smoothly
+        groups = [] if smoothness is Smoothness.UNDEFINED else [group]
+        rates = design.rates_of(groups, outward[None])
         found.append({name: _single(-flip * rate[0]) for name, rate in rates.items()})
     return ShapeGradient(*found, smoothness, reason)
 
@@ -164,18 +164,16 @@ def _group(answer: Any, side: str, design: Design, witness: tuple[Array, Array])
 
 def _of_many(answers: Distances, designs: Designs) -> ShapeGradientArrays:
     smoothness, reasons, _ = flagged_gradients(answers)
-    undefined = smoothness == Smoothness.UNDEFINED
+    undefined = (smoothness == Smoothness.UNDEFINED)[:, None]
     found: list[dict[str, Array]] = []
     for k, (design, body) in enumerate(zip(designs, answers.bodies, strict=True)):
         rates: dict[str, Array] = {}
         if design is not None:
             rotations = answers.poses[k][:, :3, :3]
             outward = SIGNS["ab"[k]] * np.matmul(answers.normal[:, None, :], rotations)[:, 0]
-            modes = answers.rows[:, K.OUT_MODE + 2 * k :][:, :2]
+            modes = np.where(undefined, np.nan, answers.rows[:, K.OUT_MODE + 2 * k :][:, :2])
             groups = groups_of(body, modes, answers.rows[:, K.OUT_Q + 2 * k :][:, :2])
             rates = {name: -rate for name, rate in design.rates_of(groups, outward).items()}
-            for rate in rates.values():
-                rate[undefined] = np.nan
         found.append(rates)
     return ShapeGradientArrays(*found, smoothness, reasons)
 
