@@ -112,9 +112,10 @@ def rounded_polytope(n, vertices, rounding):
         normal = cross([y - x for x, y in zip(p, q, strict=True)], sub(r, p))
         normal = [x / length(normal) * mp.sign(dot(normal, sub(p, centre))) for x in normal]
         planes.append((normal, dot(normal, p) - rounding))
-    core = []
-    for three in combinations(planes, 3):
-        core.append(mp.lu_solve(mp.matrix([m for m, _ in three]), mp.matrix([d for _, d in three])))
+    core = [
+        mp.lu_solve(mp.matrix([m for m, _ in three]), mp.matrix([d for _, d in three]))
+        for three in combinations(planes, 3)
+    ]
     return max(dot(n, list(v)) for v in core) + rounding
 
 

@@ -22,7 +22,7 @@ def at(*place):
 def test_a_ball_in_the_hole_of_a_ring():
     ring = so.Design(makers.ring, major=0.9, minor=0.25)
     ball = so.Design(so.shapes.sphere, radius=0.1)
-    answer = so.distance(so.Solid(ring.body), ball.body, REST, at(0.12, 0.16, 0.3))
+    answer = so.solids.distance(ring.body, ball.body, REST, at(0.12, 0.16, 0.3))
     way = np.array([0.9 - 0.2, -0.3])
     assert abs(answer.distance - (np.linalg.norm(way) - 0.35)) <= 1e-9
     found = so.shape_gradient(answer, a=ring, b=ball)
@@ -33,8 +33,7 @@ def test_a_ball_in_the_hole_of_a_ring():
 
 @pytest.mark.parametrize("side", ["a", "b"])
 def test_charts_of_solids(side):
-    """As a solid a body is designed as it is by itself: of a face of several charts a solid's answer
-    does not tell which one."""
+    """A solid's answer does not tell which chart of a face of several the witness point is in."""
     ball, poses = so.shapes.sphere(0.2), (REST, at(1.1, 0.9, 0.8))
     turn = slice(None) if side == "a" else slice(None, None, -1)
     design = so.Design(so.shapes.ellipsoid, semi_axes=[0.5, 0.8, 0.6])
@@ -88,9 +87,8 @@ def test_control_points_of_a_spline_move_the_gap_by_their_basis_functions():
         return so.bodies.Boundary.from_patches([*sides, *caps, *closing])
 
     design, ball = so.Design(beam, control=points), so.shapes.sphere(0.1)
-    solid = so.Solid(design.body)
-    for place in ((-0.5, 0.1, 0.9), (0.15, -0.2, 0.6), (0.6, 0.1, 1.1)):
-        answer = so.distance(solid, ball, REST, at(*place))
+    for place in ((-0.5, 0.1, 0.9), (0.6, 0.1, 1.1)):
+        answer = so.solids.distance(design.body, ball, REST, at(*place))
         found = so.shape_gradient(answer, a=design)
         curve = BSpline(knots, points, 3)
         grid = np.linspace(0.0, 1.0, 10001)
@@ -134,7 +132,7 @@ def test_numbers_that_are_nothing_but_roundoff_are_no_scale():
 
 def test_an_answer_of_other_solids_or_of_a_compound_is_refused():
     ring, ball = so.Design(makers.ring, major=0.9, minor=0.25), so.shapes.sphere(0.1)
-    other = so.distance(so.Solid(makers.ring(0.9, 0.3)), ball, REST, at(0.1, 0.2, 0.3))
+    other = so.solids.distance(makers.ring(0.9, 0.3), ball, REST, at(0.1, 0.2, 0.3))
     with pytest.raises(StandoffError, match="not the body of the design"):
         so.shape_gradient(other, a=ring)
     pieces = so.compound({"ring": so.Solid(ring.body), "ball": (ball, at(3.0, 0.0, 0.0))})
@@ -142,5 +140,5 @@ def test_an_answer_of_other_solids_or_of_a_compound_is_refused():
     with pytest.raises(StandoffError, match="compound"):
         so.shape_gradient(answer, a=ring)
     box = so.distance(so.Solid(so.shapes.box(1.0, 1.0, 1.0)), ball, REST, at(0.9, 0.1, 2.0))
-    with pytest.raises(StandoffError, match="has no vertex|has no edge|not the body"):
+    with pytest.raises(StandoffError, match="has no edge"):
         so.shape_gradient(box, a=so.Design(so.shapes.sphere, radius=1.0))

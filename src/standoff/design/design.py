@@ -153,10 +153,11 @@ class Design:
 
     def _there(self, name: str, body: Made, group: Group) -> Group:
         """The same places on a neighbour, whose planes and lines may have other numbers."""
+        given, own = boundary_of(body), boundary_of(self.body)
+        if isinstance(given, PlanarSolid) or isinstance(own, PlanarSolid):
+            return group
         if id(body) not in self._numbers:
-            given, own = boundary_of(body), boundary_of(self.body)
-            planar = isinstance(given, PlanarSolid) or isinstance(own, PlanarSolid)
-            self._numbers[id(body)] = None if planar else numbers_in(given, own)
+            self._numbers[id(body)] = numbers_in(given, own)
         numbers = self._numbers[id(body)]
         if numbers is None or numbers[group.feature] == group.feature:
             return group
@@ -165,7 +166,7 @@ class Design:
             raise StandoffError(
                 f"No derivative by {name}: of a neighbour no feature is that of the answer."
             )
-        chart = charts_of(boundary_of(body), number)[0] if group.chart >= 0 else -1
+        chart = charts_of(given, number)[0] if group.chart >= 0 else -1
         return group._replace(feature=number, chart=chart)
 
     def _sloped(self, name: str, heights: Array, step: float) -> Array:

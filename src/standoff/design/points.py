@@ -63,7 +63,7 @@ def group_of(
     counts = _counts(body)
     if not 0 <= feature.index < counts.get(feature.kind, 0):
         told = ", ".join(f"{count} of kind {kind}" for kind, count in counts.items())
-        raise StandoffError(f"{body!r} has no {feature or 'such feature'}: it has {told}.")
+        raise StandoffError(f"{body!r} has no {str(feature) or 'such feature'}: it has {told}.")
     before = list(counts).index(feature.kind)
     number = feature.index + sum(list(counts.values())[:before])
     given = np.array([(*parameters[:2], 0.0, 0.0)[:2]])
@@ -120,8 +120,7 @@ def points_of(body: Boundary | PlanarSolid, group: Group) -> Array:
     at = L.edge_record(ints, group.feature)
     kind, ts = int(ints[at + L.EDGE_KIND]), np.ascontiguousarray(group.parameters[:, 0])
     if kind == L.ON_SURFACE:
-        jets = [queries.edge_jet(ints, reals, group.feature, t)[0] for t in ts.tolist()]
-        return np.array(jets)
+        return np.array([queries.edge_jet(ints, reals, group.feature, t)[0] for t in ts.tolist()])
     found = np.empty((len(ts), CURVE_JET))
     queries.curve_jets(reals, kind, int(ints[at + L.EDGE_REALS]) + L.CURVE_DATA, ts, found)
     return found[:, :3]

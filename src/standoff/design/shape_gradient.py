@@ -19,10 +19,15 @@ from standoff.design.points import Group, group_of, groups_of, points_of
 from standoff.design.tolerances import SAME_PLACE
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state import arrays as K
-from standoff.solids.answer import NOT_UNIQUE, SolidProximity
+from standoff.solids.answer import SolidProximity
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.tracking.contact.witness_set import poses_of
-from standoff.tracking.derivatives import Smoothness, flagged_gradient, flagged_gradients
+from standoff.tracking.derivatives import (
+    NOT_UNIQUE,
+    Smoothness,
+    flagged_gradient,
+    flagged_gradients,
+)
 from standoff.tracking.many_distances import Distances
 from standoff.tracking.proximity import Proximity
 
@@ -135,7 +140,8 @@ SIGNS = {"a": 1.0, "b": -1.0}
 def _of_one(answer: Proximity | SolidProximity, designs: Designs) -> ShapeGradient:
     smoothness, reason = _smoothness(answer)
     found: list[dict[str, float | Array]] = []
-    for side, design, pose in zip("ab", designs, poses_of(answer), strict=True):  # type: ignore[arg-type]  # it reads `poses`
+    poses = poses_of(answer)  # type: ignore[arg-type]  # it reads `poses`
+    for side, design, pose in zip("ab", designs, poses, strict=True):
         if design is None:
             found.append({})
             continue
@@ -143,21 +149,24 @@ def _of_one(answer: Proximity | SolidProximity, designs: Designs) -> ShapeGradie
         flip = -1.0 if getattr(answer, "inside", "") == "BA"["ab".index(side)] else 1.0
         outward = flip * SIGNS[side] * (pose.rotation.T @ answer.normal)
         witness = pose.rotation.T @ (getattr(answer, f"point_{side}") - pose.translation)
-        group = _group(answer, side, design, (witness, outward))
         # an answer that is not at an optimum has a normal along which places do not move smoothly
-        groups = [] if smoothness is Smoothness.UNDEFINED else [group]
+        defined = smoothness is not Smoothness.UNDEFINED
+        groups = [_group(answer, side, design, (witness, outward))] if defined else []
         rates = design.rates_of(groups, outward[None])
         found.append({name: _single(-flip * rate[0]) for name, rate in rates.items()})
-    return ShapeGradient(*found, smoothness, reason)
+    return ShapeGradient(found[0], found[1], smoothness, reason)
 
 
 def _group(answer: Any, side: str, design: Design, witness: tuple[Array, Array]) -> Group:
-    """A witness point's place, which must be on the design's body."""
+    """A witness point's place. Solids' answers do not keep the solids, so it is compared."""
     feature, parameters = getattr(answer, f"feature_{side}"), getattr(answer, f"parameters_{side}")
     (point, outward), boundary = witness, boundary_of(design.body)
     group = group_of(boundary, feature, parameters, point)
     found = points_of(boundary, group)[0] + radius_of(design.body) * outward
-    if not np.linalg.norm(found - point) <= SAME_PLACE * design.body.size:
+    if (
+        isinstance(answer, SolidProximity)
+        and not np.linalg.norm(found - point) <= SAME_PLACE * design.body.size
+    ):
         raise _of_another(side, design)
     return group
 
@@ -175,7 +184,7 @@ def _of_many(answers: Distances, designs: Designs) -> ShapeGradientArrays:
             groups = groups_of(body, modes, answers.rows[:, K.OUT_Q + 2 * k :][:, :2])
             rates = {name: -rate for name, rate in design.rates_of(groups, outward).items()}
         found.append(rates)
-    return ShapeGradientArrays(*found, smoothness, reasons)
+    return ShapeGradientArrays(found[0], found[1], smoothness, reasons)
 
 
 def _single(rate: Any) -> float | Array:

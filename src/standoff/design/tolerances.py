@@ -1,11 +1,11 @@
 """Tolerances of derivatives by design, each with its unit and its reason."""
 
 STEP = 1e-3
-"""Of a parameter, or of the body's size where it is NOTHING: the step of the differences. With NODES
+"""Of a parameter, or of the body's size where it is NOTHING: the differences' step. With NODES
 their truncation is 3e-14 of the fifth derivative, their roundoff some 2e-13 of the size over the
 parameter."""
 NOTHING = 1e-9
-"""Of the body's size: a parameter below it is no scale for its own step, which would be roundoff."""
+"""Of the body's size: a parameter below it is no scale of its step, which would be roundoff."""
 UNBOUNDED_SIZE = 1.0
 """In place of the size of a half-space, which has none; its normal is a unit vector."""
 NODES = (-2, -1, 1, 2)
