@@ -42,6 +42,7 @@ NOT_CALLED = {
     "decomposition": "needs CoACD; tests/bodies/test_meshes.py tries it",
     **dict.fromkeys(("Decomposition", "Fit"), "made by decomposition"),
     "PatchBounds": "made by surfaces",
+    "Design": "takes a function by position, and any names; tests/design tries it",
     "Distances": "made by distances",
     "ServoReport": "made by servos",
     "TrackerState": "made by trackers, which check the states that they are given",
@@ -515,6 +516,10 @@ def pair_calls() -> list[Call]:
             },
         ),
         "track": (so, {"tracker": so.Tracker(SPHERE, BOX, 1e-3), **along}),
+        "shape_gradient": (
+            so,
+            {"answer": so.distance(*posed.values()), "a": so.Design(so.shapes.sphere, radius=0.5)},
+        ),
         "time_of_impact": (so, {**moved, "start": 0.0, "tolerance": 1e-9, "clearance": 0.0}),
         "voronoi_regions": (
             so,

@@ -90,3 +90,93 @@ def superellipsoid(n, semi_axes, exponents):
     q1, q2 = 2 / (2 - e1), 2 / (2 - e2)
     a, b, c = (abs(s * x) for s, x in zip(semi_axes, n, strict=True))
     return ((a**q2 + b**q2) ** (q1 / q2) + c**q1) ** (1 / q1)
+
+
+def point(n, rounding):
+    return rounding
+
+
+def segment(n, start, end):
+    return max(dot(n, start), dot(n, end))
+
+
+polygon = polytope
+
+
+def rounded_polytope(n, vertices, rounding):
+    """Of a tetrahedron: its faces moved inward by the rounding meet in the core's vertices."""
+    centre = [sum(v[k] for v in vertices) / 4 for k in range(3)]
+    planes = []
+    for k in range(4):
+        p, q, r = vertices[:k] + vertices[k + 1 :]
+        normal = cross([y - x for x, y in zip(p, q, strict=True)], sub(r, p))
+        normal = [x / length(normal) * mp.sign(dot(normal, sub(p, centre))) for x in normal]
+        planes.append((normal, dot(normal, p) - rounding))
+    core = [
+        mp.lu_solve(mp.matrix([m for m, _ in three]), mp.matrix([d for _, d in three]))
+        for three in combinations(planes, 3)
+    ]
+    return max(dot(n, list(v)) for v in core) + rounding
+
+
+def sub(a, b):
+    return [x - y for x, y in zip(a, b, strict=True)]
+
+
+def cross(a, b):
+    return [a[k - 2] * b[k - 1] - a[k - 1] * b[k - 2] for k in range(3)]
+
+
+def greatest(height, low, high):
+    """Of a smooth function of one variable with one maximum inside, which Newton finds."""
+    grid = [low + (high - low) * mpf(k) / 64 for k in range(65)]
+    best = max(grid, key=height)
+    at = mp.findroot(lambda t: mp.diff(height, t), best) if low < best < high else best
+    return height(at)
+
+
+def egg(n, radius, length, taper):
+    wide, rho = radius * mp.sqrt(1 - taper**2), mp.hypot(n[0], n[1])
+
+    def height(t):
+        s = mp.sin(t)
+        return rho * wide * mp.cos(t) / (1 + taper * s) + n[2] * length / 2 * s
+
+    return greatest(height, -mp.pi / 2, mp.pi / 2)
+
+
+def gore(n, radius, height):
+    """Arcs from pole to pole in four half-planes."""
+    round_ = (height**2 / 4 + radius**2) / (2 * radius)
+    found = height / 2 * abs(n[2])
+    for out in (n[0], n[1], -n[0], -n[1]):
+        size = mp.hypot(out, n[2])
+        if out / size * round_ > round_ - radius:
+            found = max(found, round_ * size - (round_ - radius) * out)
+    return found
+
+
+def wheel(n, major, minor, tall):
+    """The hull of an ellipse turned about an axis beside it."""
+    rho = mp.hypot(n[0], n[1])
+    return major * rho + mp.hypot(minor * rho, tall * n[2])
+
+
+def arch(n, control, weight, depth):
+    """A rational parabola in the plane y = 0 and its chord, swept along y."""
+
+    def height(t):
+        weights = [(1 - t) ** 2, 2 * t * (1 - t) * weight, t**2]
+        heights = [n[0] * x + n[2] * z for x, z in control]
+        return dot(weights, heights) / sum(weights)
+
+    return greatest(height, mpf(0), mpf(1)) + depth / 2 * abs(n[1])
+
+
+def dome(n, height):
+    """z = height (1 - x² - y²) / 2 and the disc below it."""
+    rho = mp.hypot(n[0], n[1])
+    if rho >= height * n[2]:
+        return rho
+    out = rho / (height * n[2])
+    return rho * out + n[2] * height * (1 - out**2) / 2

@@ -1,5 +1,6 @@
 """Derivatives by design, beside differences in 50 digits of closed forms."""
 
+import makers
 import numpy as np
 import pytest
 import support_functions
@@ -22,8 +23,22 @@ SHAPES = {
     "cap": {"radius": 1.0, "offset": 0.3},
     "lens": {"radius": 1.0, "offset": 0.45},
     "spindle": {"radius": 0.3, "length": 1.4},
+    "point": {"rounding": 0.3},
+    "segment": {"start": [0.1, -0.4, 0.2], "end": [-0.3, 0.5, 0.7]},
+    "polygon": {"vertices": [[1.0, 0.1, 0.0], [-0.2, 0.9, 0.1], [-0.6, -0.5, 0.2]]},
+    "rounded_polytope": {"vertices": CORNERS[:4], "rounding": 0.05},
+    "egg": {"radius": 0.5, "length": 1.4, "taper": 0.4},
+    "gore": {"radius": 0.4, "height": 1.3},
+    "wheel": {"major": 0.7, "minor": 0.2, "tall": 0.3},
+    "arch": {"control": [[-0.6, 0.0], [0.1, 0.9], [0.7, 0.1]], "weight": 1.3, "depth": 0.8},
+    "dome": {"height": 0.9},
     "superellipsoid": {"semi_axes": [0.5, 0.8, 0.6], "exponents": [0.7, 1.3]},
 }
+
+
+def design_of(shape):
+    make = getattr(makers, shape, None) or getattr(so.shapes, shape)
+    return so.Design(make, **SHAPES[shape])
 
 
 def exact(values):
@@ -68,7 +83,7 @@ def wall_facing(n, distance):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_rates_of_shapes_beside_a_wall(shape, rng):
     parameters = SHAPES[shape]
-    design, wall = so.Design(getattr(so.shapes, shape), **parameters), so.shapes.halfspace()
+    design, wall = design_of(shape), so.shapes.halfspace()
     for _ in range(6):
         n = rng.normal(size=3)
         n /= np.linalg.norm(n)
@@ -192,7 +207,7 @@ def test_a_vertex_of_a_tilted_box_is_told_one_sided_or_smooth_and_flat_contact_p
     [
         (lambda: so.Design(3, radius=1.0), "give a function"),
         (lambda: so.Design(so.shapes.sphere), "no parameter"),
-        (lambda: so.Design(so.shapes.sphere, radius=np.nan), "radius = nan"),
+        (lambda: so.Design(so.shapes.sphere, radius=np.nan), "radius has a NaN"),
         (lambda: so.Design(lambda r: r, r=1.0).body, "must return a Body"),
         (lambda: so.Design(so.shapes.sphere, radius=1.0).changed(size=2.0), "'size' is no"),
     ],

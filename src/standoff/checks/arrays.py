@@ -27,8 +27,9 @@ def text(value: ArrayLike) -> str:
     return written if len(written) <= LONGEST else written[: LONGEST - 1] + "…"
 
 
-def finite(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
-    """Copy `value` to a read-only float64 array of the given shape (-1 matches any length).
+def finite(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
+    """Copy `value` to a read-only float64 array of the given shape (-1 matches any length; None:
+    of any).
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -10,15 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.boundary import Boundary
-from standoff.bodies.features import Feature
+from standoff.bodies.features import Feature, charts_of
+from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shown
-from standoff.design.points import point_at
-from standoff.design.tolerances import NODES, ROUGH, STEP, WEIGHTS
+from standoff.design.alignment import Ints, numbers_in
+from standoff.design.points import Group, group_of, points_of
+from standoff.design.tolerances import NODES, NOTHING, ROUGH, STEP, UNBOUNDED_SIZE, WEIGHTS
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.solids.planar.solid import PlanarSolid
+from standoff.solids.spatial.solid_model import SolidModel
 
 Array = NDArray[np.float64]
-Made = Boundary | PlanarSolid
+Made = Boundary | SolidModel | PlanarSolid
 """What has a boundary: a `Body`, a ``so.Solid`` or a ``so.PlanarSolid``."""
 
 
@@ -69,6 +72,7 @@ class Design:
         if not parameters:
             raise StandoffError("A design has no parameter: give at least one, by name.")
         self.make = make
+        self._numbers: dict[int, Ints | None] = {}
         self.parameters = {name: _numbers(value, name) for name, value in parameters.items()}
 
     @cached_property
@@ -113,35 +117,78 @@ class Design:
         ValueError
             A parameter's neighbours make no body, or one with other features.
         """
-        heights = {
-            name: np.array(
-                [
-                    [height_of(body, feature, parameters, normal) for body in bodies]
-                    for bodies in of_one
-                ]
-            )
-            for name, of_one in self._neighbours.items()
-        }
-        return {name: self._rate(name, rows) for name, rows in heights.items()}
+        group = group_of(boundary_of(self.body), feature, parameters)
+        found = self.rates_of([group], np.array([finite(normal, "normal", (3,))]))
+        return {name: rate[0] if rate.ndim > 1 else float(rate[0]) for name, rate in found.items()}
 
-    def _rate(self, name: str, heights: Array) -> float | Array:
-        """From the heights (components, NODES) of the neighbours."""
+    def rates_of(self, groups: Sequence[Group], normals: Array) -> dict[str, Array]:
+        """`rates` at many places.
+
+        Parameters
+        ----------
+        groups : sequence of Group
+            The places, by their rows.
+        normals : (n, 3) array
+            Unit vectors of all rows, body frame.
+
+        Returns
+        -------
+        dict of str to array
+            Of n rows, each in the parameter's shape; nan in rows of no group.
+        """
+        return {name: self._rate(name, groups, normals) for name in self.parameters}
+
+    def _rate(self, name: str, groups: Sequence[Group], normals: Array) -> Array:
         value = self.parameters[name]
+        rates = np.full((np.size(value), len(normals)), np.nan)
         steps = self._steps(value)
-        rates = heights @ np.array(WEIGHTS) / steps
-        coarse = 0.5 * (heights[:, 2] - heights[:, 1]) / steps
-        rough = np.abs(rates - coarse) > ROUGH * (np.abs(rates) + self.body.size * STEP / steps)
+        for k, (bodies, step) in enumerate(zip(self._neighbours[name], steps, strict=True)):
+            for group in groups:
+                along = normals[group.rows]
+                heights = [
+                    heights_of(body, self._there(name, body, group), along) for body in bodies
+                ]
+                rates[k, group.rows] = self._sloped(name, np.array(heights), float(step))
+        return rates.T.reshape(len(normals), *np.shape(value))
+
+    def _there(self, name: str, body: Made, group: Group) -> Group:
+        """The same places on a neighbour, whose planes and lines may have other numbers."""
+        given, own = boundary_of(body), boundary_of(self.body)
+        if isinstance(given, PlanarSolid) or isinstance(own, PlanarSolid):
+            return group
+        if id(body) not in self._numbers:
+            self._numbers[id(body)] = numbers_in(given, own)
+        numbers = self._numbers[id(body)]
+        if numbers is None or numbers[group.feature] == group.feature:
+            return group
+        number = int(numbers[group.feature])
+        if number < 0:
+            raise StandoffError(
+                f"No derivative by {name}: of a neighbour no feature is that of the answer."
+            )
+        chart = charts_of(given, number)[0] if group.chart >= 0 else -1
+        return group._replace(feature=number, chart=chart)
+
+    def _sloped(self, name: str, heights: Array, step: float) -> Array:
+        """(m,) slopes, from the heights (NODES, m) of a component's neighbours."""
+        rates: Array = np.array(WEIGHTS) @ heights / step
+        coarse = 0.5 * (heights[2] - heights[1]) / step
+        rough = np.abs(rates - coarse) > ROUGH * (np.abs(rates) + self._size * STEP / step)
         if rough.any():
             raise StandoffError(
                 f"The boundary does not move smoothly with {name}: differences of second and of "
                 f"fourth order are {coarse[rough][0]:.6g} and {rates[rough][0]:.6g}."
             )
-        return float(rates[0]) if np.ndim(value) == 0 else rates.reshape(np.shape(value))
+        return rates
 
     def _steps(self, value: float | Array) -> Array:
         """(components,) of the differences."""
-        size = np.abs(np.ravel(value))
-        return STEP * np.where(size > 0.0, size, self.body.size)
+        scale = np.abs(np.ravel(value))
+        return STEP * np.where(scale > NOTHING * self._size, scale, self._size)
+
+    @property
+    def _size(self) -> float:
+        return self.body.size if np.isfinite(self.body.size) else UNBOUNDED_SIZE
 
     @cached_property
     def _neighbours(self) -> Mapping[str, list[list[Made]]]:
@@ -183,7 +230,7 @@ class Design:
 
     def _made(self, parameters: Mapping[str, Any]) -> Made:
         body = self.make(**parameters)
-        if not isinstance(body, Boundary | PlanarSolid):
+        if not isinstance(body, Made):
             raise StandoffTypeError(
                 f"make returned {shown(body)}: it must return a Body, a Solid or a PlanarSolid.",
                 "make",
@@ -198,29 +245,35 @@ class Design:
 
 
 def _numbers(value: Any, name: str) -> float | Array:
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.array(np.nan)
-    if array.size == 0 or not np.isfinite(array).all():
-        raise StandoffError(
-            f"{name} = {shown(value)}: give a finite number, or an array of them.", name, value
-        )
-    if array.ndim == 0:
-        return float(array)
-    array.flags.writeable = False
-    return array
+    array = finite(value, name, None)
+    if not array.size:
+        raise StandoffError(f"{name} is empty: give a number, or an array of them.", name, value)
+    return float(array) if array.ndim == 0 else array
+
+
+def boundary_of(body: Made) -> Boundary | PlanarSolid:
+    """What has the features that answers name."""
+    return body.given if isinstance(body, SolidModel) else body
 
 
 def counts_of(body: Made) -> tuple[int, ...]:
     """Numbers of features, by which bodies of one design are compared."""
-    if isinstance(body, PlanarSolid):
-        return tuple(len(loop.curves) for loop in body.loops)
-    charts = sum(len(face.charts) for face in body.face_parts)
-    return (body.n_faces, body.n_edges, body.n_vertices, charts)
+    given = boundary_of(body)
+    if isinstance(given, PlanarSolid):
+        return tuple(len(loop.curves) for loop in given.loops)
+    charts = sum(len(face.charts) for face in given.face_parts)
+    return (given.n_faces, given.n_edges, given.n_vertices, charts)
 
 
-def height_of(body: Made, feature: Feature, parameters: tuple[float, ...], normal: Array) -> float:
-    """The height of a place along a unit vector, both in the body's frame, with its rounding."""
-    radius = 0.0 if isinstance(body, PlanarSolid) else body.radius
-    return float(point_at(body, feature, parameters) @ normal) + radius
+def radius_of(body: Made) -> float:
+    """Of the ball that is swept over the core that answers name, length."""
+    given = boundary_of(body)
+    return 0.0 if isinstance(given, PlanarSolid) else given.radius
+
+
+def heights_of(body: Made, group: Group, normals: Array) -> Array:
+    """The heights (m,) of a group's places along outward unit vectors (m, 3), both in the body's
+    frame, with the body's rounding."""
+    points = points_of(boundary_of(body), group)
+    heights: Array = np.einsum("ij,ij->i", points, normals) + radius_of(body)
+    return heights

@@ -161,9 +161,14 @@ def derivative_arrays(table: Table, workers: int) -> DerivativeArrays:
 
 def gradients(table: Table) -> Array:
     """See ``Distances.gradient``."""
+    return flagged_gradients(table)[2]
+
+
+def flagged_gradients(table: Table) -> tuple[NDArray[np.object_], dict[int, str], Array]:
+    """The gradients (n, 12) alone with their flags and reasons, as `flagged_gradient`."""
     numbers = np.empty((len(table.rows), 12))
-    _derived_rows(table, numbers, 1)
-    return numbers
+    smoothness, reasons = _derived_rows(table, numbers, 1)
+    return smoothness, reasons, numbers
 
 
 def _derived_rows(
