@@ -15,12 +15,15 @@ from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shown
 from standoff.design.alignment import Ints, numbers_in
 from standoff.design.points import Group, group_of, points_of
-from standoff.design.tolerances import NODES, NOTHING, ROUGH, STEP, UNBOUNDED_SIZE, WEIGHTS
+from standoff.design.tolerances import DESIGN_STEP, NO_SCALE, ROUGH, UNBOUNDED_SIZE
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.solid_model import SolidModel
 
 Array = NDArray[np.float64]
+NODES = (-2, -1, 1, 2)
+WEIGHTS = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
+"""Of the central difference of fourth order, in steps."""
 Made = Boundary | SolidModel | PlanarSolid
 """What has a boundary: a `Body`, a ``so.Solid`` or a ``so.PlanarSolid``."""
 
@@ -173,7 +176,7 @@ class Design:
         """(m,) slopes, from the heights (NODES, m) of a component's neighbours."""
         rates: Array = np.array(WEIGHTS) @ heights / step
         coarse = 0.5 * (heights[2] - heights[1]) / step
-        rough = np.abs(rates - coarse) > ROUGH * (np.abs(rates) + self._size * STEP / step)
+        rough = np.abs(rates - coarse) > ROUGH * (np.abs(rates) + self._size * DESIGN_STEP / step)
         if rough.any():
             raise StandoffError(
                 f"The boundary does not move smoothly with {name}: differences of second and of "
@@ -184,7 +187,7 @@ class Design:
     def _steps(self, value: float | Array) -> Array:
         """(components,) of the differences."""
         scale = np.abs(np.ravel(value))
-        return STEP * np.where(scale > NOTHING * self._size, scale, self._size)
+        return DESIGN_STEP * np.where(scale > NO_SCALE * self._size, scale, self._size)
 
     @property
     def _size(self) -> float:

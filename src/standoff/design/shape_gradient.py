@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from standoff.checks.real_numbers import shown
 from standoff.design.design import Design, boundary_of, radius_of
 from standoff.design.points import Group, group_of, groups_of, points_of
-from standoff.design.tolerances import SAME_PLACE
+from standoff.design.tolerances import OTHER_PLACE
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state import arrays as K
 from standoff.solids.answer import SolidProximity
@@ -165,7 +165,7 @@ def _group(answer: Any, side: str, design: Design, witness: tuple[Array, Array])
     found = points_of(boundary, group)[0] + radius_of(design.body) * outward
     if (
         isinstance(answer, SolidProximity)
-        and not np.linalg.norm(found - point) <= SAME_PLACE * design.body.size
+        and not np.linalg.norm(found - point) <= OTHER_PLACE * design.body.size
     ):
         raise _of_another(side, design)
     return group

@@ -44,7 +44,7 @@ WORK = {
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 25, 60, 3),
     "world": Work("worlds of many bodies", 5, 45, 10),
-    "solids": Work("solids in space", 36, 50, 21),
+    "solids": Work("solids in space", 36, 50, 20),
     "planar": Work("planar solids", 15, 20, 4),
 }
 
