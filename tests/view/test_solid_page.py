@@ -424,7 +424,7 @@ def test_a_world_draws_what_it_tells_of_all_its_pairs_of_solids() -> None:
         until(lambda: stage.picture._closest._label.text.startswith("lid – ball: "))
         assert not stage.picture._minima._label.visible
         assert len(lines(page, "others")) > 1
-        assert "feet - lid: apart" in panel._matrix.content
+        until(lambda: "feet - lid: apart" in panel._matrix.content)
 
 
 def test_a_world_of_planar_solids_is_refused() -> None:
