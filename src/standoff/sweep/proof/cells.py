@@ -1,0 +1,76 @@
+"""Cells of a box of parameters: made by halving, so that they fill it exactly."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
+
+DEEPEST = 50
+"""Most halvings along one parameter: all middles are then exact in a double."""
+
+
+class Cells(NamedTuple):
+    """Cells of the unit cube of parameters.
+
+    Attributes
+    ----------
+    place : (n, columns) array of int
+        Which of the 2**depth parts of each parameter's range, from 0 on.
+    depth : (n, columns) array of int
+        How often each range was halved.
+    """
+
+    place: Whole
+    depth: Whole
+
+    @classmethod
+    def whole(cls, columns: int) -> Cells:
+        """Return the whole box, as one cell."""
+        nothing = np.zeros((1, columns), dtype=np.int64)
+        return cls(nothing, nothing)
+
+    @property
+    def middles(self) -> Array:
+        """(n, columns) middles in the unit cube, exact."""
+        middles: Array = np.ldexp(self.place + 0.5, -self.depth)
+        return middles
+
+    @property
+    def halves(self) -> Array:
+        """(n, columns) half sides in the unit cube, exact."""
+        halves: Array = np.ldexp(0.5, -self.depth)
+        return halves
+
+    @property
+    def levels(self) -> Whole:
+        """(n,) how often each was halved in all: its volume is 2**-level of the box's."""
+        levels: Whole = self.depth.sum(axis=1)
+        return levels
+
+    def at(self, which: object) -> Cells:
+        """Return some of them."""
+        return Cells(self.place[which], self.depth[which])  # type: ignore[index]
+
+    def halved(self, along: Whole) -> Cells:
+        """Return both halves of each, next to each other.
+
+        Parameters
+        ----------
+        along : (n,) array of int
+            The parameter that is halved, of each cell.
+        """
+        place, depth = (np.repeat(x, 2, axis=0) for x in self)
+        rows, columns = np.arange(len(place)), np.repeat(along, 2)
+        depth[rows, columns] += 1
+        place[rows, columns] = 2 * place[rows, columns] + rows % 2
+        return Cells(place, depth)
+
+    def holding(self, points: Array) -> NDArray[np.bool_]:
+        """Return which of n points of the unit cube is in the cell of its row; ends count."""
+        inside: NDArray[np.bool_] = np.all(np.abs(points - self.middles) <= self.halves, axis=1)
+        return inside
