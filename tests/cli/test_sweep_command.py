@@ -72,15 +72,15 @@ def test_an_uncertified_row_is_told(
     standoff: Standoff, job: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     job.write_text(JOB.replace("below = 0.5\nmost_below = 100\n", ""), encoding="utf-8")
-    from standoff.sweep import summary
+    from standoff.sweep.rows import Rows
 
     def all_but_two(first: int, answers: Any) -> Any:
         rows = real(first, answers)
         rows.status[(rows.row == 12) | (rows.row == 2999)] = 3
         return rows
 
-    real = summary.Rows.of
-    monkeypatch.setattr(summary.Rows, "of", all_but_two)
+    real = Rows.of
+    monkeypatch.setattr(Rows, "of", all_but_two)
     ended = standoff("sweep", job, "-o", tmp_path / "out")
     assert ended.code == 3
     said = lines_of(ended.out)

@@ -16,7 +16,7 @@ from standoff.cli.output import (
 )
 from standoff.cli.progress import progress_bar
 from standoff.cli.sweep_arguments import SweepCommand
-from standoff.cli.sweep_lines import estimate_lines, report_lines, row_lines
+from standoff.cli.sweep_lines import estimate_lines, report_lines, row_facts, row_lines
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.sweep.estimate import estimated
@@ -25,6 +25,7 @@ from standoff.sweep.job import Job
 from standoff.sweep.reading import load_job
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.run import run_sweep
+from standoff.tracking.answers import PROVEN
 from standoff.tracking.pair_plot import plot as pair_figure
 
 JSON_ROWS = 10
@@ -99,18 +100,17 @@ def _draw(command: SweepCommand, figure: Any) -> None:
 def _row(command: SweepCommand, job: Job, row: int) -> int:
     if not 0 <= row < job.rows:
         raise CommandError(f"--row: the job has rows 0 to {job.rows - 1}, got {row}")
-    numbers = job.numbers(row, row + 1)
-    found = job.distances(row, row + 1)
-    answer = found[0]
+    found = job.alone(row)
     if command.plot is not None:
-        _draw(command, pair_figure(*job.bodies, answer, unit=job.scene.length_unit))
+        if found.nearest is None:
+            raise CommandError(f"--plot: row {row} has no pair within the horizon to be drawn")
+        _draw(command, pair_figure(*found.shapes, found.nearest, unit=job.subject.length_unit))
     if command.json:
-        facts: dict[str, Any] = {"row": row}
-        facts["parameters"] = dict(zip(job.columns, numbers[0].tolist(), strict=True))
-        tell(json_text(facts | answer.as_dict()))
+        tell(json_text(row_facts(job, row, found)))
     else:
-        tell("\n".join(row_lines(job, row, numbers[0], found)))
-    return ExitCode.DONE if answer.certified else ExitCode.NOT_CERTIFIED
+        tell("\n".join(row_lines(job, row, found)))
+    certified = bool(PROVEN[found.rows.status[0]])
+    return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
 
 
 def _estimate(command: SweepCommand, job: Job) -> int:

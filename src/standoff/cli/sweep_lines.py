@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +14,9 @@ from standoff.sweep.folder import REPORT
 from standoff.sweep.job import Job
 from standoff.sweep.parameters import UNIFORM, Parameter
 from standoff.sweep.report import Report, numbers_of
-from standoff.sweep.summary import Listed, Rows, Spread
-from standoff.tracking.many_distances import Distances
+from standoff.sweep.rows import Rows
+from standoff.sweep.subjects.subject import Alone
+from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.proximity import shown_size
 from standoff.tracking.status import BY_NUMBER
 from standoff.wording import counted
@@ -44,11 +46,10 @@ def _what(parameter: Parameter) -> str:
 
 
 def _head(job: Job) -> list[str]:
-    a, b = job.scene.pair
     ways = ", ".join(f"{p.name} ({_what(p)})" for p in job.parameters)
     seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
     return [
-        line("sweep", f"{job.title}: {a} and {b}"),
+        line("sweep", f"{job.title}: {job.subject.name}"),
         line("parameters", ways),
         line("rows", f"{_grouped(job.rows)}, {job.kind}{seed}"),
     ]
@@ -57,7 +58,7 @@ def _head(job: Job) -> list[str]:
 def report_lines(report: Report, folder: Path) -> list[str]:
     """Return the lines that sum up a sweep."""
     job, found = report.job, report.found
-    unit = job.scene.length_unit
+    unit = job.subject.length_unit
     statuses = zip(BY_NUMBER, found.statuses.tolist(), strict=True)
     told = ", ".join(f"{_grouped(n)} {status.name}" for status, n in statuses if n)
     lines = [
@@ -124,7 +125,7 @@ def _histogram(report: Report) -> list[str]:
 def _worst(job: Job, rows: Rows) -> list[str]:
     first = rows.at(slice(FIRST_ROWS))
     numbers = numbers_of(job, first.row.tolist())
-    unit = job.scene.length_unit
+    unit = job.subject.length_unit
     lines = []
     for k, (row, distance) in enumerate(zip(first.row.tolist(), first.distance, strict=True)):
         status = BY_NUMBER[int(first.status[k])].name
@@ -147,29 +148,52 @@ def _below(below: Listed, length: float, unit: str) -> str:
     return told if listed == below.count else f"{told}; the report lists the first {listed}"
 
 
-def row_lines(job: Job, row: int, numbers: Array, found: Distances) -> list[str]:
+def row_facts(job: Job, row: int, found: Alone) -> dict[str, Any]:
+    """Return one row as plain data."""
+    numbers = job.numbers(row, row + 1)[0].tolist()
+    facts: dict[str, Any] = {"row": row}
+    facts["parameters"] = dict(zip(job.columns, numbers, strict=True))
+    nearest: dict[str, Any] = {} if found.nearest is None else found.nearest.as_dict()
+    rows = found.rows.facts()
+    whole = {key: rows[key][0] for key in ("distance", "lower_bound", "status")}
+    return facts | found.state | nearest | whole
+
+
+def row_lines(job: Job, row: int, found: Alone) -> list[str]:
     """Return the lines for one row."""
-    answer = found[0]
-    unit, size = job.scene.length_unit, shown_size(answer)
-    (a, b), lines = job.scene.pair, [line("sweep", job.title), line("row", f"{row} of {job.rows}")]
+    numbers, unit = job.numbers(row, row + 1)[0], job.subject.length_unit
+    lines = [line("sweep", job.title), line("row", f"{row} of {job.rows}")]
     at = 0
     for p in job.parameters:
         values = " ".join(f"{x:.17g}" for x in numbers[at : at + p.width].tolist())
         at += p.width
         own = f" {unit if not p.unit and p.width == 1 else p.unit}".rstrip()
         lines.append(line(p.name, f"{values}{own}, {_what(p)}"))
-    for name, poses in zip((a, b), found.poses, strict=True):
-        rows = [" ".join(f"{x:.9g}" for x in part) for part in poses[0][:3].tolist()]
+    for name, numbers in found.state.items():
+        lines.append(line(name, " ".join(f"{x:.17g}" for x in numbers)))
+    for name, pose in found.poses:
+        rows = [" ".join(f"{x:.9g}" for x in part) for part in pose[:3].tolist()]
         lines += [line(f"pose {name}" if k == 0 else "", text) for k, text in enumerate(rows)]
+    return lines + _answer(found, unit)
+
+
+def _answer(found: Alone, unit: str) -> list[str]:
+    """The lines of a row's distance: of all its pairs, and of the nearest."""
+    rows, answer = found.rows, found.nearest
+    status = BY_NUMBER[int(rows.status[0])]
+    ended = line("status", f"{status.name}: {status.advice}")
+    bound = line("lower bound", f"{rows.lower_bound[0]:.17g} {unit}")
+    if answer is None:
+        return [bound, ended]
+    (a, b), size = found.names, shown_size(answer)
     return [
-        *lines,
-        line("distance", f"{answer.distance:.17g} {unit}"),
-        line("lower bound", f"{answer.lower_bound:.17g} {unit}"),
+        line("distance", f"{rows.distance[0]:.17g} {unit}"),
+        bound,
         line("upper bound", f"{answer.upper_bound:.17g} {unit}"),
         line("points", f"{vector_text(answer.point_a, size)} {unit} on {a}, {answer.feature_a}"),
         line("", f"{vector_text(answer.point_b, size)} {unit} on {b}, {answer.feature_b}"),
         line("normal", f"{vector_text(answer.normal, 1.0)} from {a} to {b}"),
-        line("status", f"{answer.status.name}: {answer.status.advice}"),
+        ended,
     ]
 
 

@@ -1,4 +1,4 @@
-"""Sweeps: distances of two bodies at very many poses, kept as totals and worst rows."""
+"""Sweeps: distances at very many poses, of a pair, a world or a robot, as totals and worst rows."""
 
 from typing import TYPE_CHECKING
 
@@ -10,8 +10,9 @@ if TYPE_CHECKING:
     from standoff.sweep.job import Bins, Job, Keep
     from standoff.sweep.reading import load_job
     from standoff.sweep.report import Report
+    from standoff.sweep.rows import Rows
     from standoff.sweep.run import run_sweep
-    from standoff.sweep.summary import Rows, Summary
+    from standoff.sweep.summary import Summary
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
@@ -22,7 +23,8 @@ else:
             "standoff.sweep.reading": ("load_job",),
             "standoff.sweep.report": ("Report",),
             "standoff.sweep.run": ("run_sweep",),
-            "standoff.sweep.summary": ("Rows", "Summary"),
+            "standoff.sweep.rows": ("Rows",),
+            "standoff.sweep.summary": ("Summary",),
         },
     )
 

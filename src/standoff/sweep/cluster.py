@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -13,15 +12,11 @@ from standoff.errors import StandoffError, not_installed
 from standoff.sweep.code import code_facts
 from standoff.sweep.folder import put_text, shard_file
 from standoff.sweep.job import Job, digest_of
-from standoff.sweep.reading import load_job
+from standoff.sweep.known_jobs import job_of
 from standoff.sweep.shard import computed, text_of_shard
 
 AHEAD = 2
 """Shards per thread of the cluster that are handed out before they are asked for."""
-
-_jobs: dict[tuple[str, str], Job] = {}
-_reading = threading.Lock()
-"""A worker's own: its threads share what it has read."""
 
 
 def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str) -> Iterator[int]:
@@ -98,11 +93,5 @@ def shard_text(file: str, job_digest: str, code_digest: str, k: int) -> tuple[in
             f"a worker has another library, {code_facts()}: install the same versions everywhere",
             "cluster",
         )
-    with _reading:
-        job = _jobs.get((file, job_digest))
-        if job is None:
-            job = load_job(file)
-            if job.digest != job_digest:
-                raise StandoffError(f"a worker finds another job in {file}", "cluster")
-            _jobs[file, job_digest] = job
+    job = job_of(file, job_digest)
     return k, text_of_shard(job, code_digest, k, computed(job, k))

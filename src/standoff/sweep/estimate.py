@@ -9,7 +9,7 @@ from typing import NamedTuple
 from standoff.checks.numbers import whole_number
 from standoff.sweep.job import Job, check_job
 from standoff.sweep.shard import text_of_shard
-from standoff.sweep.summary import MOST_UNCERTIFIED, Rows, Summary
+from standoff.sweep.summary import MOST_UNCERTIFIED, Summary
 
 PROBES, PROBE_ROWS = 8, 1024
 """Places of the sweep that are looked at, evenly apart, and rows at each."""
@@ -62,11 +62,11 @@ def estimated(job: Job, workers: int = 1) -> Estimate:
     check_job(job)
     whole_number(workers, "workers")
     starts = sorted({job.rows * k // PROBES for k in range(PROBES)})
-    job.distances(0, 1)  # compiles, where that is still to be done
+    job.answers(0, 1)  # compiles, where that is still to be done
     found, began = Summary(job.keep), time.perf_counter()
     for first, next_first in zip(starts, [*starts[1:], job.rows], strict=True):
         end = min(first + PROBE_ROWS, next_first)
-        found.add_rows(Rows.of(first, job.distances(first, end).rows))
+        found.add_rows(job.answers(first, end))
     each = (time.perf_counter() - began) / found.rows
     processes = max(1, min(workers, os.cpu_count() or 1, job.shards))
     # With as many workers as shards, the longest worker counts.

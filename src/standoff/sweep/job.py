@@ -1,4 +1,4 @@
-"""A sweep's job: what its file says, checked and built, and the poses of any of its rows."""
+"""A sweep's job: what its file says, checked and built, and the answers of any of its rows."""
 
 from __future__ import annotations
 
@@ -15,13 +15,16 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffTypeError
+from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose
 from standoff.scene import Scene
-from standoff.sweep.parameters import Parameter, in_ranges, moved
+from standoff.sweep.parameters import Parameter, in_ranges
+from standoff.sweep.rows import Rows
 from standoff.sweep.sample_file import SampleFile
 from standoff.sweep.samplers import Sampler
-from standoff.tracking.many_distances import Distances, answered_rows
+from standoff.sweep.subjects.pair import ConvexPair
+from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.tracking.many_distances import Distances
 
 Array = NDArray[np.float64]
 
@@ -71,7 +74,7 @@ class Keep(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Job:
-    """A sweep over poses of the two bodies of a scene's pair.
+    """A sweep over what a job's file names: a pair of bodies, a world or a robot.
 
     `standoff.sweep.load_job` reads one from a file.
 
@@ -79,11 +82,8 @@ class Job:
     ----------
     file : Path
     title : str
-    scene : Scene
-        Seen through the pair.
-    bodies : pair of Body
-    homes : pair of Pose
-        World poses of A and B where all parameters are zero.
+    subject : Subject
+        What is swept: it answers rows by their numbers.
     parameters : tuple of Parameter
         In the file's order.
     kind : str
@@ -93,15 +93,11 @@ class Job:
     rows : int
     keep : Keep
     shard_rows : int
-    within : float or None
-        Horizon [length]; of rows that are farther apart only that is proven.
     """
 
     file: Path
     title: str
-    scene: Scene
-    bodies: tuple[Body, Body]
-    homes: tuple[Pose, Pose]
+    subject: Subject
     parameters: tuple[Parameter, ...]
     kind: str
     seed: int
@@ -109,7 +105,43 @@ class Job:
     rows: int
     keep: Keep
     shard_rows: int
-    within: float | None = None
+
+    @property
+    def pair(self) -> ConvexPair:
+        """What is swept, of a job over two convex bodies.
+
+        Raises
+        ------
+        StandoffError
+            If it is over something else.
+        """
+        if not isinstance(self.subject, ConvexPair):
+            raise StandoffError(
+                f"The job is over {self.subject.name}, and this is of a pair of convex bodies: ask "
+                "job.answers or job.alone.",
+                "job",
+            )
+        return self.subject
+
+    @property
+    def scene(self) -> Scene:
+        """Seen through the pair, of a pair."""
+        return self.pair.scene
+
+    @property
+    def bodies(self) -> tuple[Body, Body]:
+        """A and B, of a pair."""
+        return self.pair.bodies
+
+    @property
+    def homes(self) -> tuple[Pose, Pose]:
+        """World poses of A and B where all parameters are zero, of a pair."""
+        return self.pair.homes
+
+    @property
+    def within(self) -> float | None:
+        """Horizon [length]; of rows that are farther apart only that is proven."""
+        return self.subject.within
 
     @property
     def shards(self) -> int:
@@ -132,33 +164,46 @@ class Job:
         return in_ranges(self.parameters, self.source.points(first, end))
 
     def poses(self, numbers: Array) -> tuple[Array, Array]:
-        """Return the world poses of A and B, (n, 4, 4) each, or (1, 4, 4) where none moves it."""
-        a, b = (
-            moved(home, body, self.parameters, numbers)
-            for home, body in zip(self.homes, self.scene.pair, strict=True)
-        )
-        return a, b
+        """Return the world poses of A and B, (n, 4, 4) each, or (1, 4, 4) where none moves it.
+
+        Raises
+        ------
+        StandoffError
+            If the job is of no pair.
+        """
+        return self.pair.poses(self.parameters, numbers)
 
     def distances(self, first: int, end: int) -> Distances:
-        """Return the distances of rows first .. end - 1: of each row the same bits, whichever
+        """Return the distances of rows first .. end - 1 of a pair: of each row the same bits,
+        whichever others are computed with it.
+
+        Raises
+        ------
+        StandoffError
+            If the job is of no pair: `answers` is for any.
+        """
+        return self.pair.distances(self.parameters, self.numbers(first, end))
+
+    def answers(self, first: int, end: int) -> Rows:
+        """Return what is kept of rows first .. end - 1: of each row the same bits, whichever
         others are computed with it."""
-        a, b = self.poses(self.numbers(first, end))
-        return answered_rows(*self.bodies, a, b, within=self.within)
+        return self.subject.rows(self.parameters, self.numbers(first, end), first)
+
+    def alone(self, row: int) -> Alone:
+        """Return one row in full."""
+        return self.subject.alone(self.parameters, self.numbers(row, row + 1), row)
 
     @cached_property
     def facts(self) -> Mapping[str, Any]:
         """All that its results depend on, as plain data."""
-        a, b = self.scene.pair
         sampler: dict[str, Any] = {"kind": self.kind, "rows": self.rows, "seed": self.seed}
         if isinstance(self.source, SampleFile):
             sampler["file_sha256"] = self.source.digest
         return {
             "version": 1,
             "title": self.title,
-            "length_unit": self.scene.length_unit,
-            "pair": {"a": a, "b": b},
-            "bodies": {"a_sha256": self.bodies[0].digest, "b_sha256": self.bodies[1].digest},
-            "poses": dict(zip("ab", (p.matrix.tolist() for p in self.homes), strict=True)),
+            "length_unit": self.subject.length_unit,
+            **self.subject.facts(),
             "within": self.within,
             "parameters": {p.name: p.facts() for p in self.parameters},
             "order": [p.name for p in self.parameters],

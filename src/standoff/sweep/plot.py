@@ -62,7 +62,7 @@ def histogram_figure(report: Report) -> Figure:
             axes.bar(at, count, wide, color=NEAR if near else OUTSIDE, **look)
             where = (at + 0.5 * wide, count)
             axes.annotate(told, where, (0, 3), textcoords="offset points", ha="center", fontsize=8)
-    unit = _plain(job.scene.length_unit)
+    unit = _plain(job.subject.length_unit)
     if job.keep.below is not None:
         axes.axvline(limit, color=NEAR, lw=1.2, ls="--")
         told = f"{counted(found.below.count, 'row')} not proven to be {limit:g} {unit}".rstrip()

@@ -19,6 +19,7 @@ from standoff.sweep.samplers import (
     Sampler,
     SobolSampler,
 )
+from standoff.sweep.subjects.pair import ConvexPair
 from standoff.tracking.inputs import check_pair
 from standoff.whole_files import file_name
 from standoff.wording import counted, printable
@@ -92,9 +93,7 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     return Job(
         file=path,
         title=top.text("title", scene.title),
-        scene=scene,
-        bodies=scene.pair_bodies,
-        homes=_homes(scene),
+        subject=ConvexPair(scene, scene.pair_bodies, _homes(scene), within),
         parameters=parameters,
         kind=kind,
         seed=seed,
@@ -102,7 +101,6 @@ def load_job(file: str | os.PathLike[str]) -> Job:
         rows=rows,
         keep=_keep(top, within),
         shard_rows=_shard_rows(top),
-        within=within,
     )
 
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from standoff.sweep.code import code_facts
 from standoff.sweep.job import Job, digest_of
-from standoff.sweep.summary import Listed, Rows, Summary
+from standoff.sweep.rows import Rows
+from standoff.sweep.summary import Listed, Summary
 
 Array = NDArray[np.float64]
 
@@ -60,14 +61,12 @@ def report_facts(report: Report, most: int | None = None) -> dict[str, Any]:
             facts[key] = _capped(job, listed, most)
     if job.keep.below is not None:
         facts["below"] = {"length": job.keep.below, **facts["below"]}
-    a, b = job.scene.pair
     return {
         "format": "standoff sweep report",
         "version": 1,
         "title": job.title,
-        "length_unit": job.scene.length_unit,
-        "a": a,
-        "b": b,
+        "length_unit": job.subject.length_unit,
+        **job.subject.reported(),
         "job_sha256": job.digest,
         "code_sha256": digest_of(code_facts()),
         "sampler": job.kind,
@@ -85,10 +84,14 @@ def _capped(job: Job, listed: Listed, most: int | None) -> dict[str, Any]:
 
 
 def listed_facts(job: Job, rows: Rows) -> dict[str, Any]:
-    """Return rows as plain data with their parameters, computed from their numbers."""
+    """Return rows as plain data with their parameters, computed from their numbers; of several
+    pairs, with the names of the nearest."""
     numbers = numbers_of(job, rows.row.tolist())
     columns = {name: numbers[:, k].tolist() for k, name in enumerate(job.columns)}
-    return {**rows.facts(), "parameters": columns}
+    facts = rows.facts()
+    if "pair" in facts:
+        facts["pair"] = [job.subject.pair_names(number) for number in facts["pair"]]
+    return {**facts, "parameters": columns}
 
 
 def numbers_of(job: Job, rows: Sequence[int]) -> Array:

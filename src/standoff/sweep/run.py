@@ -31,7 +31,7 @@ from standoff.sweep.folder import (
     shard_file,
 )
 from standoff.sweep.job import Job, check_job
-from standoff.sweep.reading import load_job
+from standoff.sweep.known_jobs import job_of
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.shard import NotThisShard
 from standoff.sweep.summary import Summary
@@ -150,7 +150,7 @@ def _made(job: Job, folder: Path, missing: Sequence[int], workers: int) -> Itera
         return
     # Here, so that one process compiles what is not compiled yet.
     first, _ = job.shard(missing[0])
-    job.distances(first, first + 1)
+    job.answers(first, first + 1)
     given = os.path.abspath(job.file), job.digest, os.path.abspath(folder)
     with _processes(min(workers, len(missing))) as pool:
         left, running = list(reversed(missing)), set[Future[int]]()
@@ -191,10 +191,6 @@ def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-_jobs: dict[str, Job] = {}
-"""A worker's own, by digest."""
-
-
 def _begin() -> None:
     """Make a new process a worker, which ends with its parent."""
     os.environ[QUIET] = "1"
@@ -209,9 +205,4 @@ def _follow_parent() -> None:
 
 
 def _work(file: str, digest: str, folder: str, k: int) -> int:
-    if digest not in _jobs:
-        job = load_job(file)
-        if job.digest != digest:
-            raise StandoffError(f"{file} was changed while the sweep began: run it again", "job")
-        _jobs[digest] = job
-    return make_shard(_jobs[digest], Path(folder), k)
+    return make_shard(job_of(file, digest), Path(folder), k)

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from standoff.sweep.job import Job, digest_of
-from standoff.sweep.summary import Rows, Summary
+from standoff.sweep.summary import Summary
 
 FORMAT, VERSION = "standoff sweep shard", 1
 
@@ -28,8 +28,7 @@ def of_rows(job: Job, first: int, end: int) -> Summary:
     """Return what is kept of rows first .. end - 1."""
     found = Summary(job.keep)
     for start in range(first, end, BLOCK):
-        answers = job.distances(start, min(start + BLOCK, end))
-        found.add_rows(Rows.of(start, answers.rows))
+        found.add_rows(job.answers(start, min(start + BLOCK, end)))
     return found
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.kernels.state import arrays as K
 from standoff.sweep.job import Keep
+from standoff.sweep.rows import Rows
 from standoff.tracking.answers import PROVEN
 from standoff.tracking.status import BY_NUMBER, Status
 
@@ -23,67 +23,6 @@ MOST_UNCERTIFIED = 1000
 
 PENDING = 4
 """Times the number of worst rows that may wait to be sorted."""
-
-
-class Rows(NamedTuple):
-    """Some rows, each with its number and its answer, (n,) each.
-
-    Attributes
-    ----------
-    row : array of int
-    distance, lower_bound : arrays
-        nan where there is none.
-    status : array of int
-        Numbers of `Status`.
-    """
-
-    row: Whole
-    distance: Array
-    lower_bound: Array
-    status: Whole
-
-    @classmethod
-    def none(cls) -> Rows:
-        return cls(np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0, np.int64))
-
-    @classmethod
-    def of(cls, first: int, answers: Array) -> Rows:
-        """Return the rows from `first` on of a batch's answers, as the kernels write them."""
-        given = answers[:, K.STATUS]
-        status = np.where(np.isnan(given), Status.REFUSED.value, given).astype(np.int64)
-        numbers = np.arange(first, first + len(answers))
-        distance, lower_bound = (answers[:, k].copy() for k in (K.DISTANCE, K.LOWER_BOUND))
-        return cls(numbers, distance, lower_bound, status)
-
-    def at(self, which: Any) -> Rows:
-        """Return some of them."""
-        return Rows(*(column[which] for column in self))
-
-    def with_more(self, more: Rows) -> Rows:
-        """Return these, followed by others."""
-        return Rows(*(np.concatenate(both) for both in zip(self, more, strict=True)))
-
-    def facts(self) -> dict[str, list[Any]]:
-        """Return plain data that JSON can hold: None for nan, statuses by name."""
-        return {
-            "row": self.row.tolist(),
-            "distance": _finite(self.distance),
-            "lower_bound": _finite(self.lower_bound),
-            "status": [BY_NUMBER[k].name for k in self.status.tolist()],
-        }
-
-    @classmethod
-    def from_facts(cls, facts: Mapping[str, Any]) -> Rows:
-        return cls(
-            np.array(facts["row"], dtype=np.int64),
-            np.array(facts["distance"], dtype=np.float64),
-            np.array(facts["lower_bound"], dtype=np.float64),
-            np.array([Status[name].value for name in facts["status"]], dtype=np.int64),
-        )
-
-
-def _finite(values: Array) -> list[float | None]:
-    return [x if math.isfinite(x) else None for x in values.tolist()]
 
 
 @dataclass

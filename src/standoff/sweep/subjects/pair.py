@@ -1,0 +1,79 @@
+"""A sweep of two convex bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from standoff.bodies.body import Body
+from standoff.motion import Pose
+from standoff.scene import Scene
+from standoff.sweep.parameters import Parameter, moved
+from standoff.sweep.rows import Rows
+from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.tracking.many_distances import Distances, answered_rows
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class ConvexPair(Subject):
+    """The two convex bodies of a scene's pair.
+
+    Attributes
+    ----------
+    scene : Scene
+        Seen through the pair.
+    bodies : pair of Body
+    homes : pair of Pose
+        World poses of A and B where all parameters are zero.
+    within : float or None
+    """
+
+    scene: Scene
+    bodies: tuple[Body, Body]
+    homes: tuple[Pose, Pose]
+    within: float | None
+
+    @property
+    def length_unit(self) -> str:
+        return self.scene.length_unit
+
+    @property
+    def name(self) -> str:
+        return " and ".join(self.scene.pair)
+
+    def poses(self, parameters: Sequence[Parameter], numbers: Array) -> tuple[Array, Array]:
+        """Return the world poses of A and B, (n, 4, 4) each, or (1, 4, 4) where none moves it."""
+        a, b = (
+            moved(home, body, parameters, numbers)
+            for home, body in zip(self.homes, self.scene.pair, strict=True)
+        )
+        return a, b
+
+    def distances(self, parameters: Sequence[Parameter], numbers: Array) -> Distances:
+        """Return the distances of rows."""
+        return answered_rows(*self.bodies, *self.poses(parameters, numbers), within=self.within)
+
+    def rows(self, parameters: Sequence[Parameter], numbers: Array, first: int) -> Rows:
+        return Rows.of(first, self.distances(parameters, numbers).rows)
+
+    def alone(self, parameters: Sequence[Parameter], numbers: Array, row: int) -> Alone:
+        found = self.distances(parameters, numbers)
+        poses = tuple(zip(self.scene.pair, (x[0] for x in found.poses), strict=True))
+        rows = Rows.of(row, found.rows)
+        return Alone(rows, found[0], self.scene.pair, self.bodies, poses, {})
+
+    def facts(self) -> dict[str, Any]:
+        return {
+            "pair": self.reported(),
+            "bodies": {"a_sha256": self.bodies[0].digest, "b_sha256": self.bodies[1].digest},
+            "poses": dict(zip("ab", (p.matrix.tolist() for p in self.homes), strict=True)),
+        }
+
+    def reported(self) -> dict[str, Any]:
+        return dict(zip("ab", self.scene.pair, strict=True))
