@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from standoff.kernels.body import layout as L
 from standoff.sweep.job import Job
-from standoff.sweep.proof.bounds import TOGETHER, Mover, PairBounds
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.extent import farthest
+from standoff.sweep.proof.pair_box import TOGETHER, PairBox
 from standoff.tracking.many_distances import answered_rows
 from sweep.conftest import TOP, Make
 
@@ -99,6 +99,10 @@ b = "part"
 """
 
 
+def with_bodies(job: Job, bodies: tuple[so.Body, so.Body]) -> Job:
+    return replace(job, subject=replace(job.pair, bodies=bodies))
+
+
 def some_cells(rng: np.random.Generator, n: int, columns: int) -> Cells:
     depth = rng.integers(0, 9, (n, columns))
     return Cells(rng.integers(0, 1 << 62, (n, columns)) % (1 << depth), depth)
@@ -111,11 +115,11 @@ def points_in(rng: np.random.Generator, cells: Cells) -> np.ndarray:
 
 
 def check_cells(job: Job, rng: np.random.Generator, n: int = 1000) -> np.ndarray:
-    bounds = PairBounds(job)
+    bounds = PairBox(job.pair, job.parameters, 0.0)
     cells = some_cells(rng, n, len(job.parameters))
     found = answered_rows(*job.bodies, *job.poses(bounds.numbers(cells)))
     told = bounds.bounds(cells, found)
-    balls = bounds.by_balls(job.poses(bounds.numbers(cells)), bounds.moved(bounds.half(cells))[0])
+    balls = bounds.by_balls(job.poses(bounds.numbers(cells)), bounds.moves(cells)[0])
     low = np.array([p.low for p in job.parameters])
     for _ in range(4):
         numbers = low + points_in(rng, cells) * bounds.width
@@ -133,14 +137,14 @@ def test_no_place_in_a_cell_is_beyond_its_bounds(
     job = make(SPATIAL)
     other = BODIES[list(BODIES)[int(rng.integers(len(BODIES) - 2))]]
     for bodies in ((BODIES[name], other), (other, BODIES[name])):
-        assert check_cells(replace(job, bodies=bodies), rng).mean() > 0.9
+        assert check_cells(with_bodies(job, bodies), rng).mean() > 0.9
 
 
 def test_nor_above_a_half_space(make: Make, rng: np.random.Generator) -> None:
     text = SPATIAL.replace('moves = "part"\nwhat = "turn_y"', 'moves = "part"\nwhat = "x"')
     job = make(text)
     bodies = BODIES["rounded box"], so.shapes.halfspace([0.3, -0.4, 1.0], 0.5)
-    assert check_cells(replace(job, bodies=bodies), rng).all()
+    assert check_cells(with_bodies(job, bodies), rng).all()
 
 
 def test_nor_in_the_plane(make: Make, rng: np.random.Generator) -> None:
@@ -154,8 +158,9 @@ def test_along_any_normal_a_turn_adds_no_more_to_the_support(
     the point that stands for the support."""
     vertices = rng.normal(size=(20, 3)) + [1.0, 0.5, -0.3]
     job = make(SPATIAL)
-    job = replace(job, bodies=(so.shapes.polytope(vertices), job.bodies[1]))
-    bounds, mover = PairBounds(job), Mover(job, 0)
+    job = with_bodies(job, (so.shapes.polytope(vertices), job.bodies[1]))
+    bounds = PairBox(job.pair, job.parameters, 0.0)
+    mover = bounds.movers[0]
     cells = some_cells(rng, 3000, len(job.parameters))
     at, half = bounds.numbers(cells) * bounds.unit, bounds.half(cells)
     normal = rng.normal(size=(3000, 3))

@@ -7,8 +7,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from standoff.sweep.job import Job
 from standoff.sweep.proof.cells import Cells
-from standoff.sweep.proof.search import TOGETHER, CellSearch, _parted
+from standoff.sweep.proof.pair_box import PairBox
+from standoff.sweep.proof.search import TOGETHER, _parted, search
 from standoff.sweep.proof.summary import Kind, ProofSummary
 from standoff.tracking.many_distances import answered_rows
 from sweep.conftest import PARAMETERS, TOP, Make
@@ -19,18 +21,23 @@ kind = "sobol"
 rows = 2000
 """.replace('what = "turn_z"', 'what = "turn_z"\nfrom = -0.6\nto = 0.9')
 
-Closed = list[tuple[Cells, np.ndarray]]
+
+def box_of(job: Job, clearance: float, finest: float) -> PairBox:
+    box = PairBox(job.pair, job.parameters, clearance)
+    box.finest = finest
+    return box
 
 
 def searched(
     make: Make, clearance: float, finest: float = 0.5, queries: int = 20_000
-) -> tuple[CellSearch, ProofSummary, Cells, np.ndarray]:
+) -> tuple[Job, PairBox, ProofSummary, Cells, np.ndarray]:
     """A search, and all cells that it closed."""
-    search, closed = CellSearch(make(BOX), clearance, finest), []
-    found = search.run(Cells.whole(4), queries, 20, lambda *told: closed.append(told))
+    job, closed = make(BOX), []
+    box = box_of(job, clearance, finest)
+    found = search(box, Cells.whole(4), queries, 20, lambda *told: closed.append(told))
     cells, kinds = (list(x) for x in zip(*closed, strict=True))
     every = Cells(*(np.concatenate(part) for part in zip(*cells, strict=True)))
-    return search, found, every, np.concatenate(kinds)
+    return job, box, found, every, np.concatenate(kinds)
 
 
 def test_halves_fill_their_cell() -> None:
@@ -51,11 +58,11 @@ def test_halves_fill_their_cell() -> None:
 
 @pytest.mark.parametrize(("clearance", "queries"), [(0.3, 20_000), (1.5, 5000), (0.3, 500)])
 def test_no_sample_contradicts_a_cell(make: Make, clearance: float, queries: int) -> None:
-    search, found, cells, kinds = searched(make, clearance, queries=queries)
+    job, _, found, cells, kinds = searched(make, clearance, queries=queries)
     assert sum((found.share(kind) for kind in Kind), Fraction(0)) == 1
     assert [found.number(kind) for kind in Kind] == np.bincount(kinds, minlength=3).tolist()
-    points = search.job.source.points(0, 2000)
-    rows = search.job.distances(0, 2000)
+    points = job.source.points(0, 2000)
+    rows = job.distances(0, 2000)
     low, high = cells.middles - cells.halves, cells.middles + cells.halves
     counts = np.zeros(len(Kind))
     for point, lower, upper in zip(points, rows.lower_bound, rows.upper_bound, strict=True):
@@ -72,8 +79,7 @@ def test_no_sample_contradicts_a_cell(make: Make, clearance: float, queries: int
 
 def test_a_box_that_is_free_is_proven_whole(make: Make) -> None:
     job = make(BOX.replace("from = -5.0\nto = 2.0", "from = 0.5\nto = 5.0"))
-    search = CellSearch(job, 0.5, 0.01)
-    found = search.run(Cells.whole(4), 10**6, 5)
+    found = search(box_of(job, 0.5, 0.01), Cells.whole(4), 10**6, 5)
     assert found.verdict.name == "PROVEN"
     assert found.share(Kind.PROVEN) == 1
     assert 0.5 <= found.bound <= job.distances(0, 2000).upper_bound.min()
@@ -81,28 +87,30 @@ def test_a_box_that_is_free_is_proven_whole(make: Make) -> None:
 
 
 def test_counterexamples_are_places_that_are_nearer(make: Make) -> None:
-    search, found, _, _ = searched(make, 0.3)
+    job, _, found, _, _ = searched(make, 0.3)
     places = found.counterexamples.places
     assert found.verdict.name == "VIOLATED"
     assert len(places.distance) == 20 < found.counterexamples.count
     assert (np.diff(places.distance) >= 0.0).all()
-    there = answered_rows(*search.job.bodies, *search.job.poses(places.numbers))
+    there = answered_rows(*job.bodies, *job.poses(places.numbers))
     assert (there.upper_bound == places.distance).all()
     assert places.distance[0] == found.nearest.places.distance[0]
 
 
 def test_parts_of_a_box_come_to_the_same(make: Make) -> None:
-    """Wherever the budget does not end it; and as JSON has it."""
-    search, whole, _, _ = searched(make, 0.3)
+    """What the search itself would halve a cell into, searched alone; and as JSON has it."""
+    box = box_of(make(BOX), 0.3, 2.0)
     first = Cells.whole(4)
-    for along in (0, 3, 1):
-        first = first.halved(np.full(len(first.place), along))
-    parts = [search.run(first.at([k]), 20_000, 20) for k in range(8)]
+    whole = search(box, first, 10**6, 20)
+    first = first.halved(box.look(first).along)
     again = ProofSummary(20, 4)
-    for part in parts:
+    for k in range(2):
+        part = search(box, first.at([k]), 10**6, 20)
         again.add(ProofSummary.from_facts(part.facts(), 20, 4))
-    assert abs(float(again.share(Kind.PROVEN)) - float(whole.share(Kind.PROVEN))) < 0.01
+    assert again.cells == whole.cells
+    assert again.open.facts() == whole.open.facts()
     assert sum((again.share(kind) for kind in Kind), Fraction(0)) == 1
+    assert 0.0 < again.share(Kind.PROVEN) < 1.0
     told = ProofSummary.from_facts(again.facts(), 20, 4)
     assert told.facts() == again.facts()
 
@@ -117,7 +125,7 @@ def test_a_level_that_is_too_large_is_parted_with_its_queries() -> None:
 
 
 def test_without_queries_all_is_open(make: Make) -> None:
-    found = CellSearch(make(BOX), 0.3, 0.05).run(Cells.whole(4), 0, 5)
+    found = search(box_of(make(BOX), 0.3, 0.05), Cells.whole(4), 0, 5)
     assert found.share(Kind.OPEN) == 1
     assert found.verdict.name == "UNDECIDED"
     assert found.facts()["bound"] is None

@@ -64,7 +64,9 @@ def _sphere() -> tuple[Array, float]:
     along = (2.0 * np.arange(SIDE) + 1.0) / SIDE - 1.0
     u, v = (x.ravel() for x in np.meshgrid(along, along))
     one = np.ones_like(u)
-    faces = [np.stack(np.roll((sign * one, u, v), k, axis=0), 1) for k in range(3) for sign in (-1, 1)]
+    faces = [
+        np.stack(np.roll((sign * one, u, v), k, axis=0), 1) for k in range(3) for sign in (-1, 1)
+    ]
     found = np.concatenate(faces)
     # On the face at distance 1, no point of a square is farther from its middle than its half
     # diagonal; seen from the origin the angle is less.

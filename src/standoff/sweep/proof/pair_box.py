@@ -18,7 +18,7 @@ From above, the distance is at most that in the middle and all that the bodies' 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +26,14 @@ from numpy.typing import NDArray
 from standoff.impact.moment import Box
 from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
-from standoff.sweep.job import Job
-from standoff.sweep.parameters import SHIFTS, TURNS, in_ranges
+from standoff.sweep.parameters import SHIFTS, TURNS, Parameter
+from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.extent import farthest
 from standoff.sweep.proof.tolerances import CELL_ROUNDINGS, RANGE_ROUNDINGS, UNIT_NORMAL
-from standoff.tracking.many_distances import Distances
+from standoff.sweep.subjects.pair import ConvexPair
+from standoff.tracking.answers import proven
+from standoff.tracking.many_distances import Distances, answered_rows
 
 Array = NDArray[np.float64]
 
@@ -41,44 +43,32 @@ TOGETHER = -1
 """Of all turns of a body together."""
 
 
-class Bounds(NamedTuple):
-    """What is proven of the signed distance in n cells, and which parameters matter there.
-
-    Attributes
-    ----------
-    lower, upper : (n,) arrays
-        Anywhere in the cell the distance is between them.
-    ways : (n, columns) array
-        What each parameter by itself takes from the bound in the middle, length.
-    moved : (n, columns) array
-        How far each parameter by itself can move a point.
-    """
-
-    lower: Array
-    upper: Array
-    ways: Array
-    moved: Array
-
-
 class Mover:
     """A body, and the parameters that move it.
 
     Parameters
     ----------
-    job : Job
+    pair : ConvexPair
     side : int
         0 for A, 1 for B.
+    parameters : sequence of Parameter
+        Of both.
     """
 
-    def __init__(self, job: Job, side: int) -> None:
-        self.body, name = job.bodies[side], job.scene.pair[side]
-        own = [(k, p) for k, p in enumerate(job.parameters) if p.moves == name]
+    def __init__(self, pair: ConvexPair, side: int, parameters: Sequence[Parameter]) -> None:
+        self.body, name = pair.bodies[side], pair.scene.pair[side]
+        own = [(k, p) for k, p in enumerate(parameters) if p.moves == name]
         self.shifts = [(k, SHIFTS.index(p.what)) for k, p in own if p.what in SHIFTS]
         self.turns = [(k, TURNS.index(p.what)) for k, p in own if p.what in TURNS]
-        self.home = job.homes[side].rotation
+        self.home = pair.homes[side].rotation
         self.box = Box(self.body)
         self.radius = float(self.body.reals[L.RADIUS])
         self.far = farthest(self.body) if self.turns else 0.0
+
+    @property
+    def size(self) -> float:
+        """Lengths that take part in a point's place, in all."""
+        return self.far + self.radius + self.box.reach + float(np.abs(self.box.middle).sum())
 
     def moved(self, half: Array) -> tuple[Array, dict[int, Array]]:
         """Return how far a point of the body moves at most, and by each parameter alone."""
@@ -163,24 +153,51 @@ def _seen_after(seen: Array, axis: int, angle: Array) -> Array:
     return found
 
 
-class PairBounds:
-    """Bounds on the distance of a job's pair in cells of its parameters."""
+class PairBox(ParameterBox):
+    """The parameters of two convex bodies.
 
-    def __init__(self, job: Job) -> None:
-        self.job = job
-        self.movers = Mover(job, 0), Mover(job, 1)
-        self.width = np.array([p.high - p.low for p in job.parameters])
-        ends = np.array([abs(p.low) + abs(p.high) for p in job.parameters])
+    Parameters
+    ----------
+    pair : ConvexPair
+    parameters : sequence of Parameter
+        Shifts and turns.
+    clearance : float
+    """
+
+    block = 8192
+    """Their poses and answers, some 5 MB, stay near the processor."""
+
+    def __init__(self, pair: ConvexPair, parameters: Sequence[Parameter], clearance: float) -> None:
+        super().__init__(parameters, clearance)
+        self.pair = pair
+        self.movers = Mover(pair, 0, parameters), Mover(pair, 1, parameters)
+        ends = np.array([abs(p.low) + abs(p.high) for p in parameters])
         self.doubt = RANGE_ROUNDINGS * EPS * ends
-        self.unit = np.array([np.pi / 180.0 if p.degrees else 1.0 for p in job.parameters])
-        lengths = [float(np.abs(pose.translation).sum()) for pose in job.homes]
-        lengths += [m.far + m.radius + m.box.reach + float(np.abs(m.box.middle).sum()) for m in self.movers]
-        lengths += [float(ends[k]) for m in self.movers for k, _ in m.shifts]
+        self.unit = np.array([np.pi / 180.0 if p.degrees else 1.0 for p in parameters])
+        lengths = [float(np.abs(pose.translation).sum()) for pose in pair.homes]
+        lengths += [float(ends[k]) for mover in self.movers for k, _ in mover.shifts]
+        lengths += [mover.size for mover in self.movers]
         self.rounding = CELL_ROUNDINGS * EPS * sum(lengths)
 
-    def numbers(self, cells: Cells) -> Array:
-        """Return the parameters (n, columns) in the middles, as rows of the sweep have them."""
-        return in_ranges(self.job.parameters, cells.middles)
+    def moves(self, cells: Cells) -> tuple[Array, Array]:
+        return self.moved(self.half(cells))
+
+    def look(self, cells: Cells) -> Looked:
+        n = len(cells.place)
+        moved, ways = self.moves(cells)
+        poses = self.pair.poses(self.parameters, self.numbers(cells))
+        lower = self.by_balls(poses, moved)
+        told = Told(lower, np.full(n, np.inf), np.full(n, np.inf), ways.copy(), ways)
+        ask = np.flatnonzero(~(lower >= self.clearance))
+        doubtful = 0
+        if len(ask):
+            found = answered_rows(*self.pair.bodies, *(x if len(x) == 1 else x[ask] for x in poses))
+            own = self.bounds(cells.at(ask), found)
+            own = own._replace(lower=np.maximum(lower[ask], own.lower))
+            for every, some in zip(told, own, strict=True):
+                every[ask] = some
+            doubtful = int(np.count_nonzero(~proven(found.rows[:, K.STATUS])))
+        return self.decided(cells, moved, told, np.array([len(ask), doubtful]))
 
     def half(self, cells: Cells) -> Array:
         """Return half sides (n, columns), of angles in rad, with what rounding may add."""
@@ -210,7 +227,7 @@ class PairBounds:
         apart: Array = np.sqrt(np.sum(between * between, axis=1)) - moved
         return apart - sum(mover.box.reach + mover.radius for mover in self.movers)
 
-    def bounds(self, cells: Cells, found: Distances) -> Bounds:
+    def bounds(self, cells: Cells, found: Distances) -> Told:
         """Return what the distances in the middles of cells prove of the cells."""
         half = self.half(cells)
         whole, moved = self.moved(half)
@@ -230,9 +247,10 @@ class PairBounds:
         ways[~known] = moved[~known]
         lower = found.lower_bound - np.where(known, taken, whole)
         upper = found.upper_bound + whole
-        return Bounds(
+        return Told(
             np.where(np.isnan(lower), -np.inf, lower),
             np.where(np.isnan(upper), np.inf, upper),
+            np.where(np.isnan(found.upper_bound), np.inf, found.upper_bound),
             ways,
             moved,
         )
