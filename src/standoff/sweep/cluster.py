@@ -11,21 +11,21 @@ from typing import Any
 from standoff.errors import StandoffError, not_installed
 from standoff.sweep.code import code_facts
 from standoff.sweep.folder import put_text, shard_file
-from standoff.sweep.job import Job, digest_of
-from standoff.sweep.known_jobs import job_of
-from standoff.sweep.shard import computed, text_of_shard
+from standoff.sweep.job import digest_of
+from standoff.sweep.shard import text_of_shard
+from standoff.sweep.work import Token, Work, computed, token_of, work_of
 
 AHEAD = 2
 """Shards per thread of the cluster that are handed out before they are asked for."""
 
 
-def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str) -> Iterator[int]:
+def made_on_cluster(work: Work, folder: Path, missing: Sequence[int], address: str) -> Iterator[int]:
     """Make shards on a cluster; yields each one's number when it is there.
 
     Parameters
     ----------
-    job : Job
-        Its file, and what that names, must be at the same path on all machines.
+    work : Job or Proof
+        The job's file, and what that names, must be at the same path on all machines.
     folder : Path
         Of this machine alone.
     missing : sequence of int
@@ -48,14 +48,14 @@ def made_on_cluster(job: Job, folder: Path, missing: Sequence[int], address: str
         raise ModuleNotFoundError(told, name="distributed") from error
     if not missing:
         return
-    given = os.path.abspath(job.file), job.digest, digest_of(code_facts())
+    given = token_of(work), digest_of(code_facts())
     for k, text in _texts(Client, address, given, missing):
         put_text(shard_file(folder, k), text)
         yield k
 
 
 def _texts(
-    client_of: Any, address: str, given: tuple[str, str, str], missing: Sequence[int]
+    client_of: Any, address: str, given: tuple[Token, str], missing: Sequence[int]
 ) -> Iterator[tuple[int, str]]:
     """Numbers and texts of shards, as they come."""
     from distributed import as_completed
@@ -80,7 +80,7 @@ def _texts(
         ) from error
 
 
-def shard_text(file: str, job_digest: str, code_digest: str, k: int) -> tuple[int, str]:
+def shard_text(token: Token, code_digest: str, k: int) -> tuple[int, str]:
     """Return a shard's number and the text of its file, computed where this is called.
 
     Raises
@@ -93,5 +93,5 @@ def shard_text(file: str, job_digest: str, code_digest: str, k: int) -> tuple[in
             f"a worker has another library, {code_facts()}: install the same versions everywhere",
             "cluster",
         )
-    job = job_of(file, job_digest)
-    return k, text_of_shard(job, code_digest, k, computed(job, k))
+    work = work_of(token)
+    return k, text_of_shard(work, code_digest, k, computed(work, k))

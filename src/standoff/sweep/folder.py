@@ -11,9 +11,9 @@ from typing import Any
 
 from standoff.errors import StandoffError
 from standoff.sweep.code import code_facts
-from standoff.sweep.job import Job, digest_of
-from standoff.sweep.shard import NotThisShard, computed, read_shard, text_of_shard
-from standoff.sweep.summary import Summary
+from standoff.sweep.job import digest_of
+from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
+from standoff.sweep.work import Found, Work, computed, manifest_counts
 from standoff.whole_files import write_whole
 from standoff.wording import printable
 
@@ -52,18 +52,16 @@ def put_text(file: Path, text: str) -> None:
     write_whole({file: lambda stream: stream.write(text.encode("utf-8"))})
 
 
-def manifest_of(job: Job) -> dict[str, Any]:
+def manifest_of(work: Work) -> dict[str, Any]:
     """Return what the manifest of a job says."""
     code = code_facts()
     return {
         "format": FORMAT,
         "version": VERSION,
-        "job_sha256": job.digest,
+        "job_sha256": work.digest,
         "code_sha256": digest_of(code),
-        "rows": job.rows,
-        "shards": job.shards,
-        "seed": job.seed,
-        "job": job.facts,
+        **manifest_counts(work),
+        "job": work.facts,
         "code": code,
     }
 
@@ -123,7 +121,7 @@ def refuse_others(folder: Path) -> None:
         )
 
 
-def prepare(folder: Path, job: Job) -> None:
+def prepare(folder: Path, work: Work) -> None:
     """Make the folder ready for the job: new, or with shards of the same job and code.
 
     Call it while the folder is `locked`.
@@ -135,7 +133,7 @@ def prepare(folder: Path, job: Job) -> None:
     OSError
         If it cannot be written.
     """
-    wanted = manifest_of(job)
+    wanted = manifest_of(work)
     file = folder / MANIFEST
     if file.exists():
         _check_manifest(folder, wanted)
@@ -191,7 +189,7 @@ def _named(file: Path) -> str:
     return printable(str(file))
 
 
-def make_shard(job: Job, folder: Path, k: int) -> int:
+def make_shard(work: Work, folder: Path, k: int) -> int:
     """Compute a shard and write its file; returns its number.
 
     Raises
@@ -199,12 +197,12 @@ def make_shard(job: Job, folder: Path, k: int) -> int:
     OSError
         If it cannot be written, as on a full disk: then it is not there.
     """
-    text = text_of_shard(job, digest_of(code_facts()), k, computed(job, k))
+    text = text_of_shard(work, digest_of(code_facts()), k, computed(work, k))
     put_text(shard_file(folder, k), text)
     return k
 
 
-def kept_shard(job: Job, folder: Path, k: int) -> Summary | None:
+def kept_shard(work: Work, folder: Path, k: int) -> Found | None:
     """Return what a shard's file holds, None where there is none.
 
     Raises
@@ -216,15 +214,15 @@ def kept_shard(job: Job, folder: Path, k: int) -> Summary | None:
         text = shard_file(folder, k).read_bytes()
     except FileNotFoundError:
         return None
-    return read_shard(job, digest_of(code_facts()), k, text)
+    return read_shard(work, digest_of(code_facts()), k, text)
 
 
-def missing_shards(job: Job, folder: Path, tell: Tell) -> list[int]:
+def missing_shards(work: Work, folder: Path, tell: Tell) -> list[int]:
     """Return the numbers of shards that are to be computed; damaged ones are told and removed."""
     missing = []
-    for k in range(job.shards):
+    for k in range(work.shards):
         try:
-            whole = kept_shard(job, folder, k) is not None
+            whole = kept_shard(work, folder, k) is not None
         except NotThisShard as error:
             file = shard_file(folder, k)
             tell(f"{_named(file)} cannot be used, {error}: it is computed again")

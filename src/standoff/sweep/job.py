@@ -19,6 +19,7 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose
 from standoff.scene import Scene
 from standoff.sweep.parameters import Parameter, in_ranges
+from standoff.sweep.proof.effort import Effort
 from standoff.sweep.rows import Rows
 from standoff.sweep.sample_file import SampleFile
 from standoff.sweep.samplers import Sampler
@@ -93,6 +94,8 @@ class Job:
     rows : int
     keep : Keep
     shard_rows : int
+    effort : Effort
+        What a proof over the parameters' ranges may take.
     """
 
     file: Path
@@ -105,6 +108,7 @@ class Job:
     rows: int
     keep: Keep
     shard_rows: int
+    effort: Effort = Effort()
 
     @property
     def pair(self) -> ConvexPair:

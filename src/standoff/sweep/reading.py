@@ -11,6 +11,7 @@ from standoff.scene.files import existing_file, text_of, toml_tables
 from standoff.scene.reader import Table, shown, unknown_name
 from standoff.sweep.job import Bins, Job, Keep
 from standoff.sweep.parameters import SHIFTS, TURNS, UNIFORM, Parameter
+from standoff.sweep.proof.effort import effort_of
 from standoff.sweep.sample_file import SampleFile
 from standoff.sweep.samplers import (
     GridSampler,
@@ -29,7 +30,7 @@ VERSION = 1
 
 KEYS = (
     *("version", "title", "scene", "pair", "within"),
-    *("parameters", "sampler", "keep", "shards"),
+    *("parameters", "sampler", "keep", "shards", "prove"),
 )
 KINDS = ("random", "sobol", "latin-hypercube", "grid", "file")
 SEEDED = {
@@ -101,6 +102,7 @@ def load_job(file: str | os.PathLike[str]) -> Job:
         rows=rows,
         keep=_keep(top, within),
         shard_rows=_shard_rows(top),
+        effort=effort_of(top),
     )
 
 

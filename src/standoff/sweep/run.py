@@ -31,10 +31,11 @@ from standoff.sweep.folder import (
     shard_file,
 )
 from standoff.sweep.job import Job, check_job
-from standoff.sweep.known_jobs import job_of
+from standoff.sweep.proof.proof import Proof, check_proof
+from standoff.sweep.proof.report import ProofReport, proof_facts
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.shard import NotThisShard
-from standoff.sweep.summary import Summary
+from standoff.sweep.work import Token, Work, nothing, token_of, try_one, work_of
 from standoff.whole_files import file_name
 
 Tell = Callable[[str], None]
@@ -86,36 +87,80 @@ def run_sweep(
     ModuleNotFoundError
         If a cluster is named and Dask is not installed.
     """
-    folder = _checked(job, folder, workers)
-    folder.mkdir(parents=True, exist_ok=True)
-    refuse_others(folder)
-    with locked(folder):
-        prepare(folder, job)
-        missing = missing_shards(job, folder, tell)
-        done = job.rows - sum(_length(job, k) for k in missing)
-        if progress is not None:
-            progress(done, job.rows)
-        if cluster is None:
-            made = _made(job, folder, missing, workers)
-        else:
-            made = made_on_cluster(job, folder, missing, cluster)
-        for k in made:
-            done += _length(job, k)
-            if progress is not None:
-                progress(done, job.rows)
-        report = Report(job, merged(job, folder))
-        put_text(folder / REPORT, indented(report_facts(report)))
+    check_job(job)
+    with _all_made(job, folder, workers, cluster, progress, tell) as (where, found):
+        report = Report(job, found)
+        put_text(where / REPORT, indented(report_facts(report)))
         return report
 
 
-def _checked(job: Job, folder: str | Path, workers: int) -> Path:
-    """The folder; what cannot be used is refused."""
-    check_job(job)
+def run_proof(
+    proof: Proof,
+    folder: str | Path,
+    *,
+    workers: int = 1,
+    cluster: str | None = None,
+    progress: Progress | None = None,
+    tell: Tell = lambda line: None,
+) -> ProofReport:
+    """Search a box of parameters part by part, or go on with it, and write the report.
+
+    Parameters
+    ----------
+    proof : Proof
+    folder, workers, cluster, tell
+        As of `run_sweep`.
+    progress : callable, optional
+        Called with the parts done and the parts in all.
+
+    Returns
+    -------
+    ProofReport
+
+    Raises
+    ------
+    TypeError, ValueError, FolderError, OSError, ModuleNotFoundError
+        As of `run_sweep`.
+    """
+    check_proof(proof)
+    with _all_made(proof, folder, workers, cluster, progress, tell) as (where, found):
+        report = ProofReport(proof, found)
+        put_text(where / REPORT, indented(proof_facts(report)))
+        return report
+
+
+@contextmanager
+def _all_made(
+    work: Work,
+    folder: str | Path,
+    workers: int,
+    cluster: str | None,
+    progress: Progress | None,
+    tell: Tell,
+) -> Iterator[tuple[Path, Any]]:
+    """The folder, locked, and what is kept of all shards, once all are made."""
     whole_number(workers, "workers")
-    return file_name(folder)
+    folder = file_name(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    refuse_others(folder)
+    with locked(folder):
+        prepare(folder, work)
+        missing = missing_shards(work, folder, tell)
+        done = work.rows - sum(_length(work, k) for k in missing)
+        if progress is not None:
+            progress(done, work.rows)
+        if cluster is None:
+            made = _made(work, folder, missing, workers)
+        else:
+            made = made_on_cluster(work, folder, missing, cluster)
+        for k in made:
+            done += _length(work, k)
+            if progress is not None:
+                progress(done, work.rows)
+        yield folder, merged(work, folder)
 
 
-def merged(job: Job, folder: Path) -> Summary:
+def merged(work: Work, folder: Path) -> Any:
     """Return what is kept of all rows, from the files of all shards.
 
     Raises
@@ -123,10 +168,10 @@ def merged(job: Job, folder: Path) -> Summary:
     StandoffError
         If one is missing, or is not what was written.
     """
-    found = Summary(job.keep)
-    for k in range(job.shards):
+    found = nothing(work)
+    for k in range(work.shards):
         try:
-            part = kept_shard(job, folder, k)
+            part = kept_shard(work, folder, k)
         except NotThisShard as error:
             raise StandoffError(
                 f"{shard_file(folder, k)} was changed: {error}", "folder"
@@ -137,21 +182,20 @@ def merged(job: Job, folder: Path) -> Summary:
     return found
 
 
-def _length(job: Job, k: int) -> int:
-    first, end = job.shard(k)
+def _length(work: Work, k: int) -> int:
+    first, end = work.shard(k)
     return end - first
 
 
-def _made(job: Job, folder: Path, missing: Sequence[int], workers: int) -> Iterator[int]:
+def _made(work: Work, folder: Path, missing: Sequence[int], workers: int) -> Iterator[int]:
     """Make shards; yields each one's number when it is there."""
     if workers == 1 or len(missing) < 2:
         for k in missing:
-            yield make_shard(job, folder, k)
+            yield make_shard(work, folder, k)
         return
     # Here, so that one process compiles what is not compiled yet.
-    first, _ = job.shard(missing[0])
-    job.answers(first, first + 1)
-    given = os.path.abspath(job.file), job.digest, os.path.abspath(folder)
+    try_one(work, missing[0])
+    given = token_of(work), os.path.abspath(folder)
     with _processes(min(workers, len(missing))) as pool:
         left, running = list(reversed(missing)), set[Future[int]]()
         while left or running:
@@ -204,5 +248,5 @@ def _follow_parent() -> None:
     os._exit(1)
 
 
-def _work(file: str, digest: str, folder: str, k: int) -> int:
-    return make_shard(job_of(file, digest), Path(folder), k)
+def _work(token: Token, folder: str, k: int) -> int:
+    return make_shard(work_of(token), Path(folder), k)

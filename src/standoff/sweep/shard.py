@@ -5,50 +5,33 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from standoff.sweep.job import Job, digest_of
-from standoff.sweep.summary import Summary
+from standoff.sweep.job import digest_of
+from standoff.sweep.work import Found, Work, summary_of
 
 FORMAT, VERSION = "standoff sweep shard", 1
-
-BLOCK = 8192
-"""Rows computed at once: their poses and answers, some 5 MB, stay near the processor, and what a
-call costs by itself is shared by many."""
 
 
 class NotThisShard(Exception):
     """A shard's file that is damaged, or belongs to something else; the message says why."""
 
 
-def computed(job: Job, k: int) -> Summary:
-    """Return what is kept of the rows of shard k."""
-    return of_rows(job, *job.shard(k))
-
-
-def of_rows(job: Job, first: int, end: int) -> Summary:
-    """Return what is kept of rows first .. end - 1."""
-    found = Summary(job.keep)
-    for start in range(first, end, BLOCK):
-        found.add_rows(job.answers(start, min(start + BLOCK, end)))
-    return found
-
-
-def text_of_shard(job: Job, code: str, k: int, found: Summary) -> str:
+def text_of_shard(work: Work, code: str, k: int, found: Found) -> str:
     """Return the text of a shard's file: the same for the same job and code.
 
     Parameters
     ----------
-    job : Job
+    work : Job or Proof
     code : str
         Digest of what computed it.
     k : int
         Number of the shard.
-    found : Summary
+    found : Summary or ProofSummary
     """
-    first, end = job.shard(k)
+    first, end = work.shard(k)
     facts: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
-        "job": job.digest,
+        "job": work.digest,
         "code": code,
         "shard": k,
         "first": first,
@@ -59,7 +42,7 @@ def text_of_shard(job: Job, code: str, k: int, found: Summary) -> str:
     return f"{text}\n"
 
 
-def read_shard(job: Job, code: str, k: int, text: bytes) -> Summary:
+def read_shard(work: Work, code: str, k: int, text: bytes) -> Found:
     """Return what a shard's file holds.
 
     Raises
@@ -74,11 +57,11 @@ def read_shard(job: Job, code: str, k: int, text: bytes) -> Summary:
         raise NotThisShard("it is not a whole file") from error
     if digest_of(facts) != own:
         raise NotThisShard("its content is not what its checksum says")
-    first, end = job.shard(k)
+    first, end = work.shard(k)
     for key, value in (
-        *(("format", FORMAT), ("version", VERSION), ("job", job.digest), ("code", code)),
+        *(("format", FORMAT), ("version", VERSION), ("job", work.digest), ("code", code)),
         *(("shard", k), ("first", first), ("end", end)),
     ):
         if facts.get(key) != value:
             raise NotThisShard(f"its {key} is {facts.get(key)!r}, not {value!r}")
-    return Summary.from_facts(facts, job.keep)
+    return summary_of(work, facts)

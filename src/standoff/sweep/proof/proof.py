@@ -1,0 +1,162 @@
+"""A proof over the box of a job's parameters: what is asked, and the cells of its shards."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from standoff.checks.numbers import not_negative
+from standoff.checks.real_numbers import shown
+from standoff.errors import StandoffError, StandoffTypeError
+from standoff.sweep.job import Job, check_job, digest_of
+from standoff.sweep.parameters import UNIFORM
+from standoff.sweep.proof.box import ParameterBox
+from standoff.sweep.proof.cells import Cells
+from standoff.sweep.proof.pair_box import PairBox
+from standoff.sweep.proof.search import search
+from standoff.sweep.proof.summary import ProofSummary
+from standoff.sweep.proof.tolerances import FINEST_SHARE
+from standoff.sweep.subjects.pair import ConvexPair
+
+
+class Proof:
+    """That the bodies of a job keep a clearance at all parameters in their ranges.
+
+    Parameters
+    ----------
+    job : Job
+        Its sampler has no part in it.
+    clearance : float
+        Length.
+
+    Raises
+    ------
+    TypeError, ValueError
+        No job, or a clearance that is no length, or is negative; parameters without ranges, or a
+        subject that cells are not known of.
+    """
+
+    def __init__(self, job: Job, clearance: float) -> None:
+        check_job(job)
+        self.job = job
+        self.clearance = not_negative(clearance, "clearance")
+        self.box = _box(job, self.clearance)
+        self.effort = job.effort
+        reach = float(self.box.moves(Cells.whole(len(job.parameters)))[0][0])
+        given = self.effort.finest
+        self.box.finest = FINEST_SHARE * reach if given is None else given
+
+    @property
+    def file(self) -> Path:
+        """The job's."""
+        return self.job.file
+
+    @property
+    def shards(self) -> int:
+        """Parts of the box."""
+        return self.effort.shards
+
+    def shard(self, k: int) -> tuple[int, int]:
+        """Return the number of a part, and the next."""
+        return k, k + 1
+
+    @property
+    def most(self) -> int:
+        """Places that each list holds."""
+        return self.job.keep.worst
+
+    @property
+    def rows(self) -> int:
+        """What progress counts: parts."""
+        return self.shards
+
+    def computed(self, k: int) -> ProofSummary:
+        """Return what is proven of part k."""
+        every = self.effort.queries
+        queries = every * (k + 1) // self.shards - every * k // self.shards
+        return search(self.box, self.first(k), queries, self.most)
+
+    def first(self, k: int) -> Cells:
+        """Return part k of the box as a cell: all parts are of one size, halved along the parameter
+        that moves a point most."""
+        cell = Cells.whole(len(self.job.parameters))
+        for bit in range(self.shards.bit_length() - 2, -1, -1):
+            along = self.box.moves(cell)[1].argmax(axis=1)
+            cell = cell.halved(along).at([k >> bit & 1])
+        return cell
+
+    @cached_property
+    def facts(self) -> Mapping[str, Any]:
+        """All that its results depend on, as plain data."""
+        asked = {"clearance": self.clearance, "finest": self.box.finest}
+        left_out = ("sampler", "keep", "shards")
+        facts = {key: value for key, value in self.job.facts.items() if key not in left_out}
+        own = asked | {"queries": self.effort.queries, "shards": self.shards}
+        return {**facts, "prove": own | {"worst": self.most}}
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of `facts`."""
+        return digest_of(self.facts)
+
+
+def check_proof(proof: Any) -> None:
+    """Refuse what is no proof.
+
+    Raises
+    ------
+    StandoffTypeError
+    """
+    if not isinstance(proof, Proof):
+        raise StandoffTypeError(
+            f"proof is {shown(proof)}: give Proof(job, clearance).", "proof", proof
+        )
+
+
+def _box(job: Job, clearance: float) -> ParameterBox:
+    """The job's box of parameters.
+
+    Raises
+    ------
+    StandoffError
+    """
+    if job.kind == "file":
+        raise StandoffError(
+            "a proof needs the range of each parameter, and a sampler of kind 'file' has none: "
+            "choose another kind",
+            "job",
+        )
+    for p in job.parameters:
+        if p.what == UNIFORM:
+            raise StandoffError(
+                f"parameters.{p.name}: a proof halves ranges, and a uniform rotation has none: "
+                "give 'turn_x', 'turn_y' and 'turn_z'",
+                "job",
+            )
+    if isinstance(job.subject, ConvexPair):
+        _check_planes(job)
+        return PairBox(job.subject, job.parameters, clearance)
+    raise StandoffError(
+        f"a proof is of a pair of convex bodies or of a robot, and this job is over "
+        f"{job.subject.name}",
+        "job",
+    )
+
+
+def _check_planes(job: Job) -> None:
+    """Refuse turns of a half-space, whose points go infinitely far.
+
+    Raises
+    ------
+    StandoffError
+    """
+    for body, name in zip(job.bodies, job.scene.pair, strict=True):
+        turns = [p.name for p in job.parameters if p.moves == name and p.unit]
+        if turns and not body.bounded:
+            raise StandoffError(
+                f"parameters.{turns[0]}: '{name}' is a half-space, and a turn moves its points "
+                "infinitely far: turn the other body, the other way",
+                "job",
+            )
