@@ -14,6 +14,7 @@ from standoff.sweep import run as runs
 from standoff.sweep.folder import locked
 from standoff.sweep.reading import load_job
 from sweep.conftest import JOB, SCENE
+from sweep.test_subjects import OF_ROBOT
 
 
 @pytest.fixture
@@ -106,6 +107,29 @@ def test_one_row(standoff: Standoff, job: Path) -> None:
     assert list(facts["parameters"].values()) == found.numbers(1234, 1235)[0].tolist()
     assert facts["poses"] == answer.as_dict()["poses"]
     assert facts["status"] == answer.status.name
+
+
+def test_one_row_tells_joints_and_pair(standoff: Standoff, tmp_path: Path) -> None:
+    pytest.importorskip("mujoco")
+    file = tmp_path / "job.toml"
+    file.write_text(OF_ROBOT, encoding="utf-8")
+    job = load_job(file)
+    found = job.alone(5)
+    ended = standoff("sweep", file, "--row", 5)
+    assert ended.code == 0
+    joints = ended.out.partition("\nq  ")[2].splitlines()[0].split()
+    assert [float(number) for number in joints] == found.state["q"]
+    assert "rad, joint j2\n" in ended.out
+    assert "deg, joint j1\n" in ended.out
+    a, b = found.names
+    assert f"from {a} to {b}\n" in ended.out
+    facts = json.loads(standoff("sweep", file, "--row", 5, "--json").out)
+    assert facts["names"] == [a, b]
+    assert facts["q"] == found.state["q"]
+    swept = standoff("sweep", file, "-o", tmp_path / "out").out
+    assert "the MuJoCo model 'arm beside a shelf'" in swept
+    first = job.alone(json.loads((tmp_path / "out/report.json").read_text())["worst"]["row"][0])
+    assert f", {first.names[0]} to {first.names[1]}, {first.nearest.status.name}, " in swept
 
 
 def test_the_estimate_writes_nothing(standoff: Standoff, job: Path, tmp_path: Path) -> None:

@@ -25,9 +25,10 @@ from standoff.cli.robot_model import robot_of
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.robots.certify_tolerances import ASKED_CLEARANCE
+from standoff.robots.model_files import among
 from standoff.robots.proof import How, PathProof
 from standoff.robots.robot import Robot
-from standoff.scene import SceneError, load_scene
+from standoff.scene import load_scene
 
 MOST_SPANS = 8
 """Undecided spans that are printed; the JSON has all."""
@@ -72,15 +73,7 @@ def _check_files(command: CertifyCommand) -> None:
 
 def _among(robot: Robot, scene: Path | None) -> Robot:
     """The robot among the bodies of a scene, where they are at its start."""
-    if scene is None:
-        return robot
-    found = load_scene(scene).as_world
-    world, start = found.world, found.instant()
-    poses = found.poses(world, start) | world.fixed_poses
-    try:
-        return robot.with_obstacles({name: (world.bodies[name], poses[name]) for name in poses})
-    except StandoffError as error:
-        raise SceneError(str(error), key="bodies", file=found.file) from error
+    return robot if scene is None else among(robot, load_scene(scene))
 
 
 def _proof(command: CertifyCommand, robot: Robot, table: JointTable) -> PathProof:

@@ -20,6 +20,8 @@ OPTIONS = {
 }
 """What the library's messages say to do, as this command says it."""
 
+OF_URDF = ("srdf", "packages", "free_base")
+
 
 def robot_of(model: Any, flags: RobotFlags, *, within: float | None = None) -> Robot:
     """The robot of an MJCF file (.xml, .mjcf) or of a URDF file (.urdf).
@@ -29,32 +31,22 @@ def robot_of(model: Any, flags: RobotFlags, *, within: float | None = None) -> R
     CommandError
         The file is not there or not usable, an option does not fit it, or its package is missing.
     """
-    from standoff.robots.robot import Robot
+    from standoff.robots.model_files import ModelOptions, robot_of_file
 
-    kind = model.suffix.lower()
-    if kind not in (".xml", ".mjcf", ".urdf"):
-        raise CommandError(f"{model}: give an MJCF file (.xml) or a URDF file (.urdf)")
-    common: dict[str, Any] = {
-        "meshes": "hull" if flags.hulls else None,
-        "skip": tuple(flags.skip),
-        "within": within,
-    }
-    of_urdf = {"--srdf": flags.srdf, "--packages": flags.packages, "--free-base": flags.free_base}
-    for name, given in of_urdf.items():
-        if given and kind != ".urdf":
-            raise CommandError(f"{name}: only a URDF file has it, and {model} is none")
+    options = ModelOptions(
+        hulls=flags.hulls,
+        skip=flags.skip,
+        srdf=flags.srdf,
+        packages=flags.packages,
+        free_base=flags.free_base,
+        mimic=flags.mimic,
+    )
     try:
-        if kind != ".urdf":
-            return Robot.from_mujoco(model, **common)
-        return Robot.from_urdf(
-            model,
-            flags.srdf,
-            package_dirs=flags.packages,
-            free_base=flags.free_base,
-            mimic=None if flags.mimic is None else flags.mimic == "follow",
-            **common,
-        )
-    except (StandoffError, FileNotFoundError, ModuleNotFoundError) as error:
+        return robot_of_file(model, options, within=within)
+    except StandoffError as error:
+        option = f"--{error.argument.replace('_', '-')}: " if error.argument in OF_URDF else ""
+        raise CommandError(_as_options(f"{option}{error}")) from error
+    except (FileNotFoundError, ModuleNotFoundError) as error:
         raise CommandError(_as_options(str(error))) from error
 
 

@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.cli.summary import line, share_text, vector_text
+from standoff.cli.summary import MARGIN, line, share_text, vector_text
 from standoff.sweep.estimate import Estimate
 from standoff.sweep.folder import REPORT
 from standoff.sweep.job import Job
-from standoff.sweep.parameters import UNIFORM, Parameter
+from standoff.sweep.parameters import ANGLE, SLIDE, UNIFORM, Parameter
 from standoff.sweep.report import Report, numbers_of
 from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.proximity import shown_size
 from standoff.tracking.status import BY_NUMBER
-from standoff.wording import counted
+from standoff.wording import counted, printable
 
 FIRST_ROWS = 5
 """Worst rows that are printed; the report has all that the job keeps."""
@@ -41,6 +41,8 @@ def _grouped(number: int) -> str:
 
 
 def _what(parameter: Parameter) -> str:
+    if parameter.what in (ANGLE, SLIDE):
+        return f"joint {parameter.moves}"
     what = "uniform rotation" if parameter.what == UNIFORM else parameter.what
     return f"{what} of {parameter.moves}"
 
@@ -129,7 +131,9 @@ def _worst(job: Job, rows: Rows) -> list[str]:
     lines = []
     for k, (row, distance) in enumerate(zip(first.row.tolist(), first.distance, strict=True)):
         status = BY_NUMBER[int(first.status[k])].name
-        text = f"row {row}: {distance:.6g} {unit}, {status}, {_named(job, numbers[k])}"
+        pair = job.subject.pair_names(int(first.pair[k]))
+        between = "" if pair is None else f", {pair[0]} to {pair[1]}"
+        text = f"row {row}: {distance:.6g} {unit}{between}, {status}, {_named(job, numbers[k])}"
         lines.append(line("worst" if k == 0 else "", text))
     return lines
 
@@ -173,8 +177,15 @@ def row_lines(job: Job, row: int, found: Alone) -> list[str]:
         lines.append(line(name, " ".join(f"{x:.17g}" for x in numbers)))
     for name, pose in found.poses:
         rows = [" ".join(f"{x:.9g}" for x in part) for part in pose[:3].tolist()]
-        lines += [line(f"pose {name}" if k == 0 else "", text) for k, text in enumerate(rows)]
+        lines += _labelled(f"pose {name}", rows)
     return lines + _answer(found, unit)
+
+
+def _labelled(label: str, texts: list[str]) -> list[str]:
+    """Lines under one label, which has a line of its own where it is longer than labels are."""
+    if len(label) < MARGIN:
+        return [line(label if k == 0 else "", text) for k, text in enumerate(texts)]
+    return [printable(label), *(line("", text) for text in texts)]
 
 
 def _answer(found: Alone, unit: str) -> list[str]:

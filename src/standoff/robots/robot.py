@@ -25,7 +25,6 @@ from standoff.robots.robot_model import RobotModel
 from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
 from standoff.tracking.threads import in_parts
-from standoff.world import World
 
 if TYPE_CHECKING:
     from standoff.robots.robot_page import RobotPage
@@ -357,19 +356,9 @@ class Robot(RobotModel):
 
         return view(self, what, **options)
 
-    def _rows(self, q: Array, world: World) -> RobotRows:
-        motion = self.kinematics.motion(q)
-        return RobotRows(world.distances(motion.poses), q, motion, self._mounted, world.within)
-
     def _nearest(self, q: Array) -> RobotAnswer:
-        """The nearest pair: the first of wider and wider horizons that has any."""
-        motion = self.kinematics.motion(q)
-        for world in self._horizons.widening(self.within):
-            answer = world.distances(motion.poses)
-            if len(answer.pairs):
-                rows = RobotRows(answer, q, motion, self._mounted, world.within)
-                return rows[int(np.argmin(rows.distance))]
-        raise StandoffError(f"No pair of {self.loaded.source} was found.")
+        rows = self.nearest_rows(q)
+        return rows[int(np.argmin(rows.distance))]
 
     def _check_pairs(self) -> None:
         if not len(self._horizons.pairs):

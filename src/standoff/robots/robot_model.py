@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive
+from standoff.errors import StandoffError
 from standoff.read_only import KeepsReadOnly
 from standoff.robots.geoms import Geoms
 from standoff.robots.horizons import Horizons
@@ -17,7 +18,7 @@ from standoff.robots.kinematics import Kinematics
 from standoff.robots.loaded import Loaded
 from standoff.robots.obstacles import Obstacles, with_obstacles
 from standoff.robots.report import RobotReport, of_obstacles
-from standoff.robots.rows import Mounted
+from standoff.robots.rows import Mounted, RobotRows
 from standoff.shown_names import hides
 from standoff.wording import counted
 from standoff.world import World
@@ -25,7 +26,7 @@ from standoff.world import World
 Array = NDArray[np.float64]
 
 
-@hides("loaded")
+@hides("loaded", "nearest_rows")
 class RobotModel(KeepsReadOnly):
     """Joints, geometries, pairs and obstacles of a `Robot`; see there."""
 
@@ -92,6 +93,26 @@ class RobotModel(KeepsReadOnly):
         found = np.array(self.geoms.placements)
         found[self.geoms.moving] = self.kinematics.poses(self.kinematics.check(q))
         return found
+
+    def nearest_rows(self, q: Array) -> RobotRows:
+        """All pairs within the first of wider and wider horizons that has any, at a configuration
+        that is checked.
+
+        Raises
+        ------
+        StandoffError
+            There is no pair.
+        """
+        motion = self.kinematics.motion(q)
+        for world in self._horizons.widening(self.within):
+            answer = world.distances(motion.poses)
+            if len(answer.pairs):
+                return RobotRows(answer, q, motion, self._mounted, world.within)
+        raise StandoffError(f"No pair of {self.loaded.source} was found.")
+
+    def _rows(self, q: Array, world: World) -> RobotRows:
+        motion = self.kinematics.motion(q)
+        return RobotRows(world.distances(motion.poses), q, motion, self._mounted, world.within)
 
     def __repr__(self) -> str:
         pairs = counted(len(self._horizons.pairs), "pair")

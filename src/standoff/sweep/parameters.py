@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 
 SHIFTS = ("x", "y", "z")
 TURNS = ("turn_x", "turn_y", "turn_z")
+ANGLE, SLIDE = "angle", "slide"
+"""Of a robot's joint: the angle of one that turns, the length of one that slides."""
+
 UNIFORM = "uniform"
 """In place of a shift or turn: any orientation, all equally likely."""
 
@@ -30,10 +33,10 @@ class Parameter:
     ----------
     name : str
     moves : str
-        The body.
+        The body, or the joint of a robot.
     what : str
         One of `SHIFTS`, of the body's origin along an axis of the world; one of `TURNS`, about an
-        axis of the body through its origin; or `UNIFORM`.
+        axis of the body through its origin; `UNIFORM`; or of a joint `ANGLE` or `SLIDE`.
     low, high : float
         Its range, in the scene's length, rad, or degrees; 0 and 1 where it has none.
     degrees : bool
@@ -65,13 +68,14 @@ class Parameter:
     @property
     def unit(self) -> str:
         """Unit of its numbers, empty of lengths and of numbers without one."""
-        if self.what in TURNS:
+        if self.what in (*TURNS, ANGLE):
             return "deg" if self.degrees else "rad"
         return ""
 
     def facts(self) -> dict[str, Any]:
         """Return plain data, as a job's file has it."""
-        known: dict[str, Any] = {"moves": self.moves}
+        joint = self.what in (ANGLE, SLIDE)
+        known: dict[str, Any] = {"joint" if joint else "moves": self.moves}
         if self.what == UNIFORM:
             return known | {"rotation": UNIFORM}
         ending = "_degrees" if self.degrees else ""

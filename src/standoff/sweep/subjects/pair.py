@@ -47,6 +47,14 @@ class ConvexPair(Subject):
     def name(self) -> str:
         return " and ".join(self.scene.pair)
 
+    @property
+    def movable(self) -> tuple[str, ...]:
+        return self.scene.pair
+
+    @property
+    def planar(self) -> bool:
+        return any(body.dimension == 2 for body in self.bodies)
+
     def poses(self, parameters: Sequence[Parameter], numbers: Array) -> tuple[Array, Array]:
         """Return the world poses of A and B, (n, 4, 4) each, or (1, 4, 4) where none moves it."""
         a, b = (

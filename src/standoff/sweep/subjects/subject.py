@@ -63,6 +63,16 @@ class Subject(ABC):
     def name(self) -> str:
         """What it is called in a line."""
 
+    @property
+    @abstractmethod
+    def movable(self) -> tuple[str, ...]:
+        """Names of what parameters can move: bodies, or joints."""
+
+    @property
+    @abstractmethod
+    def planar(self) -> bool:
+        """Are the bodies planar, so that they move in a plane alone?"""
+
     @abstractmethod
     def rows(self, parameters: Sequence[Parameter], numbers: Array, first: int) -> Rows:
         """Return the answers of rows, the first of which has the number `first`.
