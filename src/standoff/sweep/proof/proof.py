@@ -15,10 +15,12 @@ from standoff.sweep.parameters import UNIFORM
 from standoff.sweep.proof.box import ParameterBox
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.pair_box import PairBox
+from standoff.sweep.proof.robot_box import RobotBox
 from standoff.sweep.proof.search import search
 from standoff.sweep.proof.summary import ProofSummary
 from standoff.sweep.proof.tolerances import FINEST_SHARE
 from standoff.sweep.subjects.pair import ConvexPair
+from standoff.sweep.subjects.robot import RobotSubject
 
 
 class Proof:
@@ -138,6 +140,8 @@ def _box(job: Job, clearance: float) -> ParameterBox:
     if isinstance(job.subject, ConvexPair):
         _check_planes(job)
         return PairBox(job.subject, job.parameters, clearance)
+    if isinstance(job.subject, RobotSubject):
+        return RobotBox(job.subject, job.parameters, clearance)
     raise StandoffError(
         f"a proof is of a pair of convex bodies or of a robot, and this job is over "
         f"{job.subject.name}",
