@@ -105,7 +105,8 @@ def with_bodies(job: Job, bodies: tuple[so.Body, so.Body]) -> Job:
 
 def some_cells(rng: np.random.Generator, n: int, columns: int) -> Cells:
     depth = rng.integers(0, 9, (n, columns))
-    return Cells(rng.integers(0, 1 << 62, (n, columns)) % (1 << depth), depth)
+    place = rng.integers(0, 1 << 62, (n, columns)) % (1 << depth)
+    return Cells(place, depth, np.zeros((n, 0)))
 
 
 def points_in(rng: np.random.Generator, cells: Cells) -> np.ndarray:

@@ -36,7 +36,7 @@ def searched(
     box = box_of(job, clearance, finest)
     found = search(box, Cells.whole(4), queries, 20, lambda *told: closed.append(told))
     cells, kinds = (list(x) for x in zip(*closed, strict=True))
-    every = Cells(*(np.concatenate(part) for part in zip(*cells, strict=True)))
+    every = Cells.together(cells)
     return job, box, found, every, np.concatenate(kinds)
 
 
@@ -117,7 +117,7 @@ def test_parts_of_a_box_come_to_the_same(make: Make) -> None:
 
 def test_a_level_that_is_too_large_is_parted_with_its_queries() -> None:
     n = 3 * TOGETHER
-    cells = Cells(np.arange(n)[:, None], np.full((n, 1), 30))
+    cells = Cells(np.arange(n)[:, None], np.full((n, 1), 30), np.zeros((n, 0)))
     parts = _parted(cells, 1001)
     assert sum(left for _, left in parts) == 1001
     assert np.array_equal(np.concatenate([c.place for c, _ in parts[::-1]]), cells.place)

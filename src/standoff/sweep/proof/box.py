@@ -32,6 +32,8 @@ class Looked(NamedTuple):
         An upper bound in the middle; inf where it was not asked.
     queries, uncertified : int
         Distances that were asked, and how many of them are not proven.
+    known : (n, pairs) array
+        As of `Cells`, for their halves.
     """
 
     kind: Whole
@@ -40,6 +42,7 @@ class Looked(NamedTuple):
     distance: Array
     queries: int
     uncertified: int
+    known: Array
 
 
 class Told(NamedTuple):
@@ -87,6 +90,16 @@ class ParameterBox(ABC):
         """Return the parameters (n, columns) in the middles, as rows of the sweep have them."""
         return in_ranges(self.parameters, cells.middles)
 
+    @property
+    def pairs(self) -> int:
+        """How many pairs are proven one by one in a cell; 0 where there is but one."""
+        return 0
+
+    @property
+    def whole(self) -> Cells:
+        """The whole box."""
+        return Cells.whole(len(self.parameters), self.pairs)
+
     @abstractmethod
     def moves(self, cells: Cells) -> tuple[Array, Array]:
         """Return how far points can move in cells (n,), and by each parameter (n, columns)."""
@@ -107,4 +120,5 @@ class ParameterBox(ABC):
         kind[told.upper < self.clearance] = Kind.VIOLATED
         kind[told.lower >= self.clearance] = Kind.PROVEN
         queries, uncertified = asked.tolist()
-        return Looked(kind, given.argmax(axis=1), told.lower, told.distance, queries, uncertified)
+        along = given.argmax(axis=1)
+        return Looked(kind, along, told.lower, told.distance, queries, uncertified, cells.known)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,16 +24,25 @@ class Cells(NamedTuple):
         Which of the 2**depth parts of each parameter's range, from 0 on.
     depth : (n, columns) array of int
         How often each range was halved.
+    known : (n, pairs) array
+        What is proven of each pair's distance in a cell that holds it, -inf at first: length. No
+        columns where there is but one pair.
     """
 
     place: Whole
     depth: Whole
+    known: Array
 
     @classmethod
-    def whole(cls, columns: int) -> Cells:
+    def whole(cls, columns: int, pairs: int = 0) -> Cells:
         """Return the whole box, as one cell."""
         nothing = np.zeros((1, columns), dtype=np.int64)
-        return cls(nothing, nothing)
+        return cls(nothing, nothing, np.full((1, pairs), -np.inf))
+
+    @classmethod
+    def together(cls, parts: Sequence[Cells]) -> Cells:
+        """Return the cells of several, in their order."""
+        return cls(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
     @property
     def middles(self) -> Array:
@@ -52,9 +62,9 @@ class Cells(NamedTuple):
         levels: Whole = self.depth.sum(axis=1)
         return levels
 
-    def at(self, which: object) -> Cells:
+    def at(self, which: Any) -> Cells:
         """Return some of them."""
-        return Cells(self.place[which], self.depth[which])  # type: ignore[index]
+        return Cells(*(column[which] for column in self))
 
     def halved(self, along: Whole) -> Cells:
         """Return both halves of each, next to each other.
@@ -64,11 +74,11 @@ class Cells(NamedTuple):
         along : (n,) array of int
             The parameter that is halved, of each cell.
         """
-        place, depth = (np.repeat(x, 2, axis=0) for x in self)
+        place, depth, known = (np.repeat(x, 2, axis=0) for x in self)
         rows, columns = np.arange(len(place)), np.repeat(along, 2)
         depth[rows, columns] += 1
         place[rows, columns] = 2 * place[rows, columns] + rows % 2
-        return Cells(place, depth)
+        return Cells(place, depth, known)
 
     def holding(self, points: Array) -> NDArray[np.bool_]:
         """Return which of n points of the unit cube is in the cell of its row; ends count."""

@@ -46,7 +46,7 @@ class Proof:
         self.clearance = not_negative(clearance, "clearance")
         self.box = _box(job, self.clearance)
         self.effort = job.effort
-        reach = float(self.box.moves(Cells.whole(len(job.parameters)))[0][0])
+        reach = float(self.box.moves(self.box.whole)[0][0])
         given = self.effort.finest
         self.box.finest = FINEST_SHARE * reach if given is None else given
 
@@ -83,7 +83,7 @@ class Proof:
     def first(self, k: int) -> Cells:
         """Return part k of the box as a cell: all parts are of one size, halved along the parameter
         that moves a point most."""
-        cell = Cells.whole(len(self.job.parameters))
+        cell = self.box.whole
         for bit in range(self.shards.bit_length() - 2, -1, -1):
             along = self.box.moves(cell)[1].argmax(axis=1)
             cell = cell.halved(along).at([k >> bit & 1])

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import Reaches
+from standoff.robots.motions import Frames
 from standoff.robots.sight import Middle, Sight, closing, some_of
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
@@ -55,59 +56,64 @@ class RobotBox(ParameterBox):
         ends = np.array([[p.low for p in parameters], [p.high for p in parameters]])
         corners = subject.configurations(parameters, np.stack([ends[0], ends.mean(0), ends[1]]))
         check_limits(subject.robot, corners, "parameters")
-        whole = self.ways(np.full((1, len(parameters)), 0.5))[0]
+        whole = self.ways(self.whole)[0]
         self.doubt = self.sight.roundoff(corners[1], whole)
 
-    def ways(self, halves: Array) -> Array:
+    def ways(self, cells: Cells) -> Array:
         """Return how far each motion goes in cells (n, nm + 1); the last is the world's, 0."""
         motions = self.sight.watched.motions
-        half, found = halves * self.width * self.unit, np.zeros((len(halves), motions.size + 1))
+        half = cells.halves * self.width * self.unit
+        found = np.zeros((len(half), motions.size + 1))
         moved = np.flatnonzero(self.columns >= 0)
         found[:, moved] = np.abs(motions.ratios[moved]) * half[:, self.columns[moved]]
         return found
 
-    def _middles(self, cells: Cells) -> tuple[Array, Whole, Whole, Middle, object]:
-        n, pairs = len(cells.place), self.sight.pairs
+    @property
+    def pairs(self) -> int:
+        return self.sight.pairs
+
+    def _seen(self, cells: Cells) -> tuple[Array, Frames, Whole, Whole, Middle]:
+        """Configurations in the middles with their frames; of each pair that is left in a cell, the
+        cell, the pair, and how far it can move."""
         q = self.subject.configurations(self.parameters, self.numbers(cells))
         frames = self.sight.frames(q)
-        at, every = np.repeat(np.arange(n), pairs), np.tile(np.arange(pairs), n)
-        middle = self.sight.middle(every, frames, at, self.ways(cells.halves)[at])
-        return q, at, every, middle, frames
+        at, pairs = np.nonzero(cells.known < self.clearance)
+        return q, frames, at, pairs, self.sight.middle(pairs, frames, at, self.ways(cells)[at])
 
     def moves(self, cells: Cells) -> tuple[Array, Array]:
         n = len(cells.place)
-        _, _, _, middle, _ = self._middles(cells)
-        by_column = self._by_column(middle.reaches).reshape(n, -1, len(self.parameters))
-        return middle.way.reshape(n, -1).max(axis=1), by_column.max(axis=1)
+        _, _, at, _, middle = self._seen(cells)
+        whole, ways = np.zeros(n), np.zeros((n, len(self.parameters)))
+        np.maximum.at(whole, at, middle.way)
+        np.maximum.at(ways, at, self._by_column(middle.reaches))
+        return whole, ways
 
     def look(self, cells: Cells) -> Looked:
-        n, pairs = len(cells.place), self.sight.pairs
-        q, at, every, middle, frames = self._middles(cells)
-        boxed = self.sight.by_boxes(every, frames, at, middle)
+        n = len(cells.place)
+        q, frames, at, pairs, middle = self._seen(cells)
+        boxed = self.sight.by_boxes(pairs, frames, at, middle)
         bound = boxed.lower - closing(middle, boxed)
-        upper, distance = np.full(len(at), np.inf), np.full(len(at), np.inf)
+        upper, distance = np.full(n, np.inf), np.full(n, np.inf)
         ask = np.flatnonzero(bound - self.clearance < self.doubt)
-        uncertified = 0
-        if len(ask):
-            apart = self.sight.ask(every[ask], q, frames, at[ask])
-            some = some_of(middle, ask)
-            bound[ask] = np.maximum(bound[ask], apart.lower - closing(some, apart))
-            distance[ask] = apart.upper + self.doubt
-            upper[ask] = distance[ask] + some.way
-            uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
+        apart = self.sight.ask(pairs[ask], q, frames, at[ask])
+        some = some_of(middle, ask)
+        bound[ask] = np.maximum(bound[ask], apart.lower - closing(some, apart))
         bound -= self.doubt
-        worst = np.arange(n) * pairs + bound.reshape(n, pairs).argmin(axis=1)
-        by_column = self._by_column(_of(middle.reaches, worst))
-        open_ = (bound < self.clearance).reshape(n, pairs)
-        moved = np.where(open_, middle.way.reshape(n, pairs), 0.0).max(axis=1)
-        told = Told(
-            bound[worst],
-            upper.reshape(n, pairs).min(axis=1),
-            distance.reshape(n, pairs).min(axis=1),
-            by_column,
-            by_column.copy(),
-        )
-        return self.decided(cells, moved, told, np.array([len(ask), uncertified]))
+        np.minimum.at(distance, at[ask], apart.upper + self.doubt)
+        np.minimum.at(upper, at[ask], apart.upper + some.way + self.doubt)
+        known, moved = cells.known.copy(), np.zeros(n)
+        known[at, pairs] = np.maximum(known[at, pairs], bound)
+        lower = known.min(axis=1)
+        open_ = known[at, pairs] < self.clearance
+        np.maximum.at(moved, at[open_], middle.way[open_])
+        ways = np.zeros((n, len(self.parameters)))
+        # along what moves the pair most that stands in the way most
+        worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
+        ways[at[worst]] = self._by_column(_of(middle.reaches, worst))
+        told = Told(lower, upper, distance, ways, ways.copy())
+        uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
+        asked = np.array([len(ask), uncertified])
+        return self.decided(cells, moved, told, asked)._replace(known=known)
 
     def _by_column(self, reaches: Reaches) -> Array:
         """How far each parameter moves the two pieces of a pair against each other (k, columns)."""

@@ -78,8 +78,9 @@ class _Search:
                 closed = np.flatnonzero(looked.kind >= 0)
                 self.record(block.at(closed), looked.kind[closed])
             left = np.flatnonzero(looked.kind < 0)
-            rest.append(block.at(left).halved(looked.along[left]))
-        return Cells(*(np.concatenate(part) for part in zip(*rest, strict=True)))
+            some = block.at(left)._replace(known=looked.known[left])
+            rest.append(some.halved(looked.along[left]))
+        return Cells.together(rest)
 
     def _count(self, cells: Cells, looked: Looked) -> None:
         found = self.found
@@ -106,7 +107,7 @@ class _Search:
         """Count cells that no queries were left for."""
         n = len(cells.place)
         none, unknown = np.zeros(n, dtype=np.int64), np.full(n, -np.inf)
-        looked = Looked(none + Kind.OPEN, none, unknown, np.full(n, np.nan), 0, 0)
+        looked = Looked(none + Kind.OPEN, none, unknown, np.full(n, np.nan), 0, 0, cells.known)
         self.found.close(cells.levels, Kind.OPEN, unknown)
         self.found.open.add(self._places(cells, looked, np.arange(n)))
         if self.record is not None:
