@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +19,21 @@ from standoff.cli.output import (
 from standoff.cli.progress import progress_bar
 from standoff.cli.sweep_arguments import SweepCommand
 from standoff.cli.sweep_lines import estimate_lines, report_lines, row_facts, row_lines
+from standoff.cli.sweep_proof import (
+    asked_proof,
+    check_proof_options,
+    tell_proof,
+    tell_proof_estimate,
+)
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.sweep.estimate import estimated
 from standoff.sweep.folder import FolderError
 from standoff.sweep.job import Job
+from standoff.sweep.proof.proof import Proof
 from standoff.sweep.reading import load_job
 from standoff.sweep.report import Report, report_facts
-from standoff.sweep.run import run_sweep
+from standoff.sweep.run import run_proof, run_sweep
 from standoff.tracking.answers import PROVEN
 from standoff.tracking.pair_plot import plot as pair_figure
 
@@ -46,6 +55,8 @@ def run_sweep_command(command: SweepCommand) -> int:
     job = load_job(command.job)
     _check_plot(command, job)
     try:
+        if command.prove is not None:
+            return _prove(command, asked_proof(command, job))
         if command.row is not None:
             return _row(command, job, command.row)
         if command.estimate:
@@ -53,11 +64,15 @@ def run_sweep_command(command: SweepCommand) -> int:
         return _sweep(command, job)
     except FolderError as error:
         raise CommandError(f"-o {error}") from error
+    except KeyboardInterrupt:
+        tell("standoff: interrupted; the same command goes on where it was", error=True)
+        return ExitCode.INTERRUPTED
     except (StandoffError, ModuleNotFoundError) as error:
         raise CommandError(f"{command.job}: {error}") from error
 
 
 def _check(command: SweepCommand) -> None:
+    check_proof_options(command)
     if command.workers < 1:
         raise CommandError(f"--workers: must be 1 or more, got {command.workers}")
     if command.cluster is not None and command.workers != 1:
@@ -122,14 +137,21 @@ def _estimate(command: SweepCommand, job: Job) -> int:
     return ExitCode.DONE
 
 
-def _sweep(command: SweepCommand, job: Job) -> int:
+def _prove(command: SweepCommand, proof: Proof) -> int:
+    if command.estimate:
+        return tell_proof_estimate(command, proof)
+    report, folder = _carried_out(command, "proving", partial(run_proof, proof))
+    return tell_proof(command, report, folder)
+
+
+def _carried_out(command: SweepCommand, doing: str, run: Callable[..., Any]) -> tuple[Any, Path]:
+    """The report of a run, and its folder; whatever ends it early is told."""
     folder = command.output
     assert folder is not None  # as `_check` has seen
     make_folder(folder, "-o")
     try:
-        with progress_bar("sweeping") as progress:
-            report = run_sweep(
-                job,
+        with progress_bar(doing) as progress:
+            report = run(
                 folder,
                 workers=command.workers,
                 cluster=command.cluster,
@@ -140,9 +162,11 @@ def _sweep(command: SweepCommand, job: Job) -> int:
         raise WriteError(
             f"{folder}: {error}; what is whole stays: the same command goes on from there"
         ) from error
-    except KeyboardInterrupt:
-        tell("standoff: interrupted; the same command goes on where it was", error=True)
-        return ExitCode.INTERRUPTED
+    return report, folder
+
+
+def _sweep(command: SweepCommand, job: Job) -> int:
+    report, folder = _carried_out(command, "sweeping", partial(run_sweep, job))
     if command.plot is not None:
         from standoff.sweep.plot import histogram_figure
 

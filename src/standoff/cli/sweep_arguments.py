@@ -35,6 +35,8 @@ class SweepCommand:
     """Try some thousand rows, tell what all will take, and write nothing."""
     row: Annotated[int | None, arg(metavar="NUMBER", help_behavior_hint="")] = None
     """Compute this row alone, and print all of it; the first is 0."""
+    prove: Annotated[str | None, arg(metavar="clearance=LENGTH", help_behavior_hint="")] = None
+    """Prove that the bodies keep this clearance at all parameters in their ranges, cell by cell."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Draw the histogram, or with --row both bodies and the answer (.png, .svg or .pdf)."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False

@@ -36,7 +36,8 @@ SIZES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
 Array = NDArray[np.float64]
 
 
-def _grouped(number: int) -> str:
+def grouped(number: int) -> str:
+    """Return a number with its digits in groups of three."""
     return f"{number:,}".replace(",", " ")
 
 
@@ -47,13 +48,18 @@ def _what(parameter: Parameter) -> str:
     return f"{what} of {parameter.moves}"
 
 
-def _head(job: Job) -> list[str]:
+def parameters_line(job: Job) -> str:
+    """Return the line of what a job changes."""
     ways = ", ".join(f"{p.name} ({_what(p)})" for p in job.parameters)
+    return line("parameters", ways)
+
+
+def _head(job: Job) -> list[str]:
     seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
     return [
         line("sweep", f"{job.title}: {job.subject.name}"),
-        line("parameters", ways),
-        line("rows", f"{_grouped(job.rows)}, {job.kind}{seed}"),
+        parameters_line(job),
+        line("rows", f"{grouped(job.rows)}, {job.kind}{seed}"),
     ]
 
 
@@ -62,7 +68,7 @@ def report_lines(report: Report, folder: Path) -> list[str]:
     job, found = report.job, report.found
     unit = job.subject.length_unit
     statuses = zip(BY_NUMBER, found.statuses.tolist(), strict=True)
-    told = ", ".join(f"{_grouped(n)} {status.name}" for status, n in statuses if n)
+    told = ", ".join(f"{grouped(n)} {status.name}" for status, n in statuses if n)
     lines = [
         *_head(job),
         line("status", told),
@@ -79,7 +85,7 @@ def report_lines(report: Report, folder: Path) -> list[str]:
 
 def _certified(report: Report) -> str:
     found = report.found
-    told = f"{_grouped(found.certified)} of {_grouped(found.rows)} rows, "
+    told = f"{grouped(found.certified)} of {grouped(found.rows)} rows, "
     told += share_text(found.certified, found.rows)
     missed = found.uncertified
     if missed.count:
@@ -118,7 +124,7 @@ def _histogram(report: Report) -> list[str]:
     return [
         line(
             "histogram" if k == 0 else "",
-            f"{name:>{width}} {'█' * round(BAR * n / most):<{BAR}} {_grouped(n)}".rstrip(),
+            f"{name:>{width}} {'█' * round(BAR * n / most):<{BAR}} {grouped(n)}".rstrip(),
         )
         for k, (name, n) in enumerate(rows)
     ]
@@ -133,12 +139,13 @@ def _worst(job: Job, rows: Rows) -> list[str]:
         status = BY_NUMBER[int(first.status[k])].name
         pair = job.subject.pair_names(int(first.pair[k]))
         between = "" if pair is None else f", {pair[0]} to {pair[1]}"
-        text = f"row {row}: {distance:.6g} {unit}{between}, {status}, {_named(job, numbers[k])}"
+        text = f"row {row}: {distance:.6g} {unit}{between}, {status}, {named(job, numbers[k])}"
         lines.append(line("worst" if k == 0 else "", text))
     return lines
 
 
-def _named(job: Job, numbers: Array) -> str:
+def named(job: Job, numbers: Array) -> str:
+    """Return a row's numbers, each behind its parameter's name."""
     pairs = zip(job.columns, numbers.tolist(), strict=True)
     return ", ".join(f"{name} {number:.6g}" for name, number in pairs)
 
@@ -213,17 +220,18 @@ def estimate_lines(job: Job, found: Estimate) -> list[str]:
     processes = counted(found.processes, "process", "processes")
     lines = [
         *_head(job),
-        line("shards", f"{_grouped(found.shards)} of {_grouped(job.shard_rows)} rows"),
+        line("shards", f"{grouped(found.shards)} of {grouped(job.shard_rows)} rows"),
         line("tried", f"{found.tried} rows, {found.row_seconds * 1e6:.3g} µs each"),
-        line("time", f"{_scaled(found.seconds, TIMES, 's')} with {processes}"),
-        line("disk", f"{_scaled(found.size, SIZES, 'B')} in shards"),
+        line("time", f"{scaled(found.seconds, TIMES, 's')} with {processes}"),
+        line("disk", f"{scaled(found.size, SIZES, 'B')} in shards"),
     ]
     if found.uncertified:
         lines.append(line("certified", f"{found.uncertified} of the tried rows are not"))
     return lines
 
 
-def _scaled(number: float, units: tuple[tuple[float, str], ...], smallest: str) -> str:
+def scaled(number: float, units: tuple[tuple[float, str], ...], smallest: str) -> str:
+    """Return a number in the largest of some units that it reaches."""
     for size, unit in units:
         if number >= size:
             return f"{number / size:.3g} {unit}"

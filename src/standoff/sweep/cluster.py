@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -19,7 +18,9 @@ AHEAD = 2
 """Shards per thread of the cluster that are handed out before they are asked for."""
 
 
-def made_on_cluster(work: Work, folder: Path, missing: Sequence[int], address: str) -> Iterator[int]:
+def made_on_cluster(
+    work: Work, folder: Path, missing: Sequence[int], address: str
+) -> Iterator[int]:
     """Make shards on a cluster; yields each one's number when it is there.
 
     Parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -108,7 +108,7 @@ class Job:
     rows: int
     keep: Keep
     shard_rows: int
-    effort: Effort = Effort()
+    effort: Effort = field(default_factory=Effort)
 
     @property
     def pair(self) -> ConvexPair:

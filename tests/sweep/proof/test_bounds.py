@@ -157,7 +157,7 @@ def test_along_any_normal_a_turn_adds_no_more_to_the_support(
 ) -> None:
     """Of vertices, against their greatest height at any other angle; the normal is any, and so is
     the point that stands for the support."""
-    vertices = rng.normal(size=(20, 3)) + [1.0, 0.5, -0.3]
+    vertices = rng.normal([1.0, 0.5, -0.3], size=(20, 3))
     job = make(SPATIAL)
     job = with_bodies(job, (so.shapes.polytope(vertices), job.bodies[1]))
     bounds = PairBox(job.pair, job.parameters, 0.0)

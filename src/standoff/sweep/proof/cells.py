@@ -42,7 +42,11 @@ class Cells(NamedTuple):
     @classmethod
     def together(cls, parts: Sequence[Cells]) -> Cells:
         """Return the cells of several, in their order."""
-        return cls(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+        return cls(
+            np.concatenate([part.place for part in parts]),
+            np.concatenate([part.depth for part in parts]),
+            np.concatenate([part.known for part in parts]),
+        )
 
     @property
     def middles(self) -> Array:
@@ -74,11 +78,11 @@ class Cells(NamedTuple):
         along : (n,) array of int
             The parameter that is halved, of each cell.
         """
-        place, depth, known = (np.repeat(x, 2, axis=0) for x in self)
+        place, depth = np.repeat(self.place, 2, axis=0), np.repeat(self.depth, 2, axis=0)
         rows, columns = np.arange(len(place)), np.repeat(along, 2)
         depth[rows, columns] += 1
         place[rows, columns] = 2 * place[rows, columns] + rows % 2
-        return Cells(place, depth, known)
+        return Cells(place, depth, np.repeat(self.known, 2, axis=0))
 
     def holding(self, points: Array) -> NDArray[np.bool_]:
         """Return which of n points of the unit cube is in the cell of its row; ends count."""

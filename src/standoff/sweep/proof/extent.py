@@ -63,15 +63,18 @@ def _sphere() -> tuple[Array, float]:
     any direction and the nearest of them."""
     along = (2.0 * np.arange(SIDE) + 1.0) / SIDE - 1.0
     u, v = (x.ravel() for x in np.meshgrid(along, along))
-    one = np.ones_like(u)
-    faces = [
-        np.stack(np.roll((sign * one, u, v), k, axis=0), 1) for k in range(3) for sign in (-1, 1)
-    ]
-    found = np.concatenate(faces)
-    # On the face at distance 1, no point of a square is farther from its middle than its half
-    # diagonal; seen from the origin the angle is less.
-    half = np.sqrt(2.0) / SIDE
-    return found / np.linalg.norm(found, axis=1)[:, None], float(np.cos(half))
+    found = np.zeros((6, len(u), 3))
+    for axis in range(3):
+        for far, sign in enumerate((-1.0, 1.0)):
+            face = found[2 * axis + far]
+            face[:, axis], face[:, axis - 2], face[:, axis - 1] = sign, u, v
+    directions = found.reshape(-1, 3)
+    # On the faces, at the distance 1 or more, no point of a square is farther from its middle than
+    # half the diagonal h; of unit length they are not farther apart, and their product is at least
+    # 1 - h^2 / 2.
+    half_diagonal = np.sqrt(2.0) / SIDE
+    lengths = np.linalg.norm(directions, axis=1)[:, None]
+    return directions / lengths, 1.0 - 0.5 * half_diagonal**2
 
 
 def _round() -> tuple[Array, float]:

@@ -109,7 +109,7 @@ class RobotBox(ParameterBox):
         ways = np.zeros((n, len(self.parameters)))
         # along what moves the pair most that stands in the way most
         worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
-        ways[at[worst]] = self._by_column(_of(middle.reaches, worst))
+        ways[at[worst]] = self._by_column(some_of(middle, worst).reaches)
         told = Told(lower, upper, distance, ways, ways.copy())
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
@@ -123,7 +123,3 @@ class RobotBox(ParameterBox):
         for k in range(len(self.parameters)):
             found[:, k] = np.where((columns == k) & (reaches.chain >= 0), ways, 0.0).sum(axis=1)
         return found
-
-
-def _of(reaches: Reaches, which: Whole) -> Reaches:
-    return Reaches(*(x[which] for x in reaches))

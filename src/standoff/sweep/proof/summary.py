@@ -60,9 +60,11 @@ class Places(NamedTuple):
 
     @classmethod
     def from_facts(cls, facts: Mapping[str, Any], columns: int) -> Places:
-        found = [np.array(facts[name], dtype=np.float64) for name in cls._fields]
-        bound = np.where(np.isnan(found[3]), -np.inf, found[3])
-        return cls(*(x.reshape(-1, columns) for x in found[:2]), found[2], bound)
+        numbers, half, distance, bound = (
+            np.array(facts[name], dtype=np.float64) for name in cls._fields
+        )
+        bound = np.where(np.isnan(bound), -np.inf, bound)
+        return cls(numbers.reshape(-1, columns), half.reshape(-1, columns), distance, bound)
 
 
 def _plain(column: Array) -> list[Any]:
