@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from standoff.kernels.state import arrays as K
 from standoff.sweep.job import Bins, Job, Keep
 from standoff.sweep.rows import Rows
-from standoff.sweep.shard import NotThisShard, of_rows, read_shard, text_of_shard
+from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
 from standoff.sweep.summary import Summary
+from standoff.sweep.work import of_rows
 from standoff.tracking.status import BY_NUMBER, Status
 from sweep.conftest import JOB, Make
 
