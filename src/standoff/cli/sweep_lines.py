@@ -12,7 +12,6 @@ from standoff.cli.summary import MARGIN, line, share_text, vector_text
 from standoff.sweep.estimate import Estimate
 from standoff.sweep.folder import REPORT
 from standoff.sweep.job import Job
-from standoff.sweep.parameters import ANGLE, SLIDE, UNIFORM, Parameter
 from standoff.sweep.report import Report, numbers_of
 from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.subject import Alone
@@ -40,15 +39,8 @@ def _grouped(number: int) -> str:
     return f"{number:,}".replace(",", " ")
 
 
-def _what(parameter: Parameter) -> str:
-    if parameter.what in (ANGLE, SLIDE):
-        return f"joint {parameter.moves}"
-    what = "uniform rotation" if parameter.what == UNIFORM else parameter.what
-    return f"{what} of {parameter.moves}"
-
-
 def _head(job: Job) -> list[str]:
-    ways = ", ".join(f"{p.name} ({_what(p)})" for p in job.parameters)
+    ways = ", ".join(f"{p.name} ({p.told})" for p in job.parameters)
     seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
     return [
         line("sweep", f"{job.title}: {job.subject.name}"),
@@ -172,7 +164,7 @@ def row_lines(job: Job, row: int, found: Alone) -> list[str]:
         values = " ".join(f"{x:.17g}" for x in numbers[at : at + p.width].tolist())
         at += p.width
         own = f" {unit if not p.unit and p.width == 1 else p.unit}".rstrip()
-        lines.append(line(p.name, f"{values}{own}, {_what(p)}"))
+        lines.append(line(p.name, f"{values}{own}, {p.told}"))
     for name, numbers in found.state.items():
         lines.append(line(name, " ".join(f"{x:.17g}" for x in numbers)))
     for name, pose in found.poses:
