@@ -13,7 +13,7 @@ from cli.test_hostile_names import OBEYED, hostile, obeyed, toml
 from standoff.sweep import run as runs
 from standoff.sweep.folder import locked
 from standoff.sweep.reading import load_job
-from sweep.conftest import JOB, SCENE
+from sweep.conftest import JOB, SCENE, TOP
 from sweep.test_subjects import OF_ROBOT
 
 
@@ -164,6 +164,8 @@ def test_the_estimate_of_the_disk_is_near(standoff: Standoff, job: Path, tmp_pat
         (["--row", "3000"], "--row: the job has rows 0 to 2999, got 3000"),
         (["--row", "-1"], "--row: the job has rows 0 to 2999, got -1"),
         (["--row", "1", "--estimate"], "--estimate and --row: give one of them"),
+        (["--row", "1", "--page", "a.html"], "--page: is of a whole sweep, and --row is not"),
+        (["-o", "out", "--page", "a.htm"], "--page a.htm: the ending '.htm' is not known"),
         (["--row", "1", "-o", "out"], "-o: --row writes nothing; leave it out"),
         (["--estimate", "-o", "out"], "-o: --estimate writes nothing; leave it out"),
         (["--estimate", "--plot", "a.png"], "--plot: --estimate writes nothing; leave it out"),
@@ -290,3 +292,48 @@ def test_the_bars_are_the_counts(job: Path, tmp_path: Path) -> None:
     assert len({bar.get_facecolor() for bar in axes.patches[:5]}) == 1
     assert axes.patches[4].get_facecolor() == to_rgba(NEAR) != to_rgba(FAR)
     assert axes.patches[5].get_facecolor() == axes.patches[49].get_facecolor() == to_rgba(FAR)
+
+
+def test_the_page(standoff: Standoff, job: Path, tmp_path: Path) -> None:
+    """One file that needs no other: totals, histogram, the worst rows drawn and listed."""
+    text = JOB.replace("rows = 3000", "rows = 60").replace("worst = 40", "worst = 3")
+    job.write_text(text.replace(TOP, f'title = "<b>a & b</b>"\n{TOP}'), encoding="utf-8")
+    page = tmp_path / "page.html"
+    ended = standoff("sweep", job, "-o", tmp_path / "out", "--page", page)
+    assert f"wrote         {page}\n" in ended.out
+    told = page.read_text(encoding="utf-8")
+    facts = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert told.count("<figure>") == 3
+    assert told.count("data:image/png;base64,") == 4
+    assert "<b>" not in told
+    assert "Sweep: &lt;b&gt;a &amp; b&lt;/b&gt;" in told
+    assert "Rows that are not certified: 0." in told
+    assert f"{facts['below']['count']} rows are not proven to be 0.5 cm apart." in told
+    for key in ("distance", "lower_bound"):
+        assert f">{facts[key]['min']:.6g} cm<" in told
+        assert f">{facts[key]['sum'] / 60:.6g} cm<" in told
+    for k, row in enumerate(facts["worst"]["row"]):
+        distance = facts["worst"]["distance"][k]
+        assert f"<figcaption>row {row}: {distance:.6g} cm, A tool, B part, " in told
+        cells = [f"{facts['worst']['parameters'][name][k]:.6g}" for name in ("x", "z", "any.1")]
+        assert "".join(f'<td class="number">{cell}</td>' for cell in cells) in told
+    assert "src=" not in told.replace('src="data:', "")
+    assert "http" not in told.replace("http-equiv", "")
+
+
+def test_the_page_lists_rows_that_are_not_certified(job: Path) -> None:
+    from standoff.sweep.page import page_of
+    from standoff.sweep.report import Report
+    from standoff.sweep.shard import of_rows
+
+    text = JOB.replace("rows = 3000", "rows = 40").replace("worst = 40", "worst = 1")
+    job.write_text(text, encoding="utf-8")
+    small = load_job(job)
+    found = of_rows(small, 0, 40)
+    rows = small.answers(7, 8)
+    found.uncertified.add(rows._replace(status=rows.status * 0 + 3))
+    told = page_of(Report(small, found))
+    assert '<span class="bad">1 row is not certified</span>' in told
+    _, _, listed = told.partition("<h2>Rows that are not certified</h2>")
+    assert "<td>7</td>" in listed
+    assert "NOT_CERTIFIED" in listed

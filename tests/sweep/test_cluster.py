@@ -54,11 +54,12 @@ def test_the_same_bytes_and_a_scheduler_that_is_lost(
 def test_a_worker_with_something_else(make: Make) -> None:
     job = make()
     code = clusters.digest_of(clusters.code_facts())
-    assert clusters.shard_text(str(job.file), job.digest, code, 4)[0] == 4
+    token = clusters.token_of(job)
+    assert clusters.shard_text(token, code, 4)[0] == 4
     with pytest.raises(StandoffError, match="a worker has another library"):
-        clusters.shard_text(str(job.file), job.digest, "0" * 64, 4)
+        clusters.shard_text(token, "0" * 64, 4)
     with pytest.raises(StandoffError, match="a worker finds another job in "):
-        clusters.shard_text(str(job.file), "0" * 64, code, 4)
+        clusters.shard_text((token[0], "0" * 64, None), code, 4)
 
 
 def test_without_dask(make: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,6 +17,7 @@ from standoff.cli.output import (
     write_whole,
 )
 from standoff.cli.progress import progress_bar
+from standoff.cli.summary import line
 from standoff.cli.sweep_arguments import SweepCommand
 from standoff.cli.sweep_lines import estimate_lines, report_lines, row_facts, row_lines
 from standoff.cli.sweep_proof import (
@@ -53,6 +54,7 @@ def run_sweep_command(command: SweepCommand) -> int:
     """
     _check(command)
     job = load_job(command.job)
+    _check_page(command)
     _check_plot(command, job)
     try:
         if command.prove is not None:
@@ -85,6 +87,20 @@ def _check(command: SweepCommand) -> None:
             raise CommandError(f"-o: {alone} writes nothing; leave it out")
     elif command.output is None or not command.output.name:
         raise CommandError("-o: name the folder for shards and report, such as: -o swept")
+
+
+def _check_page(command: SweepCommand) -> None:
+    """Refuse a page that could not be made or written afterwards."""
+    if command.page is None:
+        return
+    if command.estimate or command.row is not None:
+        alone = "--estimate" if command.estimate else "--row"
+        raise CommandError(f"--page: is of a whole sweep, and {alone} is not; leave it out")
+    check_target(command.page, "--page", (".html",))
+    try:
+        import standoff.sweep.page  # noqa: F401
+    except ModuleNotFoundError as error:
+        raise MissingExtra(str(error.name), "plot") from error
 
 
 def _check_plot(command: SweepCommand, job: Job) -> None:
@@ -171,12 +187,19 @@ def _sweep(command: SweepCommand, job: Job) -> int:
         from standoff.sweep.plot import histogram_figure
 
         _draw(command, histogram_figure(report))
+    if command.page is not None:
+        from standoff.sweep.page import page_of
+
+        page = page_of(report)
+        write_whole({command.page: lambda file: file.write(page.encode("utf-8"))})
     _print(command, report, folder)
     return ExitCode.DONE if report.holds else ExitCode.NOT_CERTIFIED
 
 
 def _print(command: SweepCommand, report: Report, folder: Path) -> None:
+    files = [str(file) for file in (command.plot, command.page) if file is not None]
     if command.json:
-        tell(json_text(report_facts(report, JSON_ROWS) | {"folder": str(folder)}))
+        facts = report_facts(report, JSON_ROWS) | {"folder": str(folder)}
+        tell(json_text(facts | ({"files": files} if files else {})))
     else:
-        tell("\n".join(report_lines(report, folder)))
+        tell("\n".join([*report_lines(report, folder), *(line("wrote", file) for file in files)]))

@@ -39,5 +39,7 @@ class SweepCommand:
     """Prove that the bodies keep this clearance at all parameters in their ranges, cell by cell."""
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Draw the histogram, or with --row both bodies and the answer (.png, .svg or .pdf)."""
+    page: Annotated[Path | None, arg(metavar="OUT.html", help_behavior_hint="")] = None
+    """Write a page with totals, histogram and the worst rows drawn, which needs no other file."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print what was found as JSON."""

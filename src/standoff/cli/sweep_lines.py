@@ -12,7 +12,6 @@ from standoff.cli.summary import MARGIN, line, share_text, vector_text
 from standoff.sweep.estimate import Estimate
 from standoff.sweep.folder import REPORT
 from standoff.sweep.job import Job
-from standoff.sweep.parameters import ANGLE, SLIDE, UNIFORM, Parameter
 from standoff.sweep.report import Report, numbers_of
 from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.subject import Alone
@@ -41,16 +40,9 @@ def grouped(number: int) -> str:
     return f"{number:,}".replace(",", " ")
 
 
-def _what(parameter: Parameter) -> str:
-    if parameter.what in (ANGLE, SLIDE):
-        return f"joint {parameter.moves}"
-    what = "uniform rotation" if parameter.what == UNIFORM else parameter.what
-    return f"{what} of {parameter.moves}"
-
-
 def parameters_line(job: Job) -> str:
     """Return the line of what a job changes."""
-    ways = ", ".join(f"{p.name} ({_what(p)})" for p in job.parameters)
+    ways = ", ".join(f"{p.name} ({p.told})" for p in job.parameters)
     return line("parameters", ways)
 
 
@@ -179,7 +171,7 @@ def row_lines(job: Job, row: int, found: Alone) -> list[str]:
         values = " ".join(f"{x:.17g}" for x in numbers[at : at + p.width].tolist())
         at += p.width
         own = f" {unit if not p.unit and p.width == 1 else p.unit}".rstrip()
-        lines.append(line(p.name, f"{values}{own}, {_what(p)}"))
+        lines.append(line(p.name, f"{values}{own}, {p.told}"))
     for name, numbers in found.state.items():
         lines.append(line(name, " ".join(f"{x:.17g}" for x in numbers)))
     for name, pose in found.poses:

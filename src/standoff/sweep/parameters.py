@@ -72,6 +72,14 @@ class Parameter:
             return "deg" if self.degrees else "rad"
         return ""
 
+    @property
+    def told(self) -> str:
+        """What it changes, for a reader."""
+        if self.what in (ANGLE, SLIDE):
+            return f"joint {self.moves}"
+        what = "uniform rotation" if self.what == UNIFORM else self.what
+        return f"{what} of {self.moves}"
+
     def facts(self) -> dict[str, Any]:
         """Return plain data, as a job's file has it."""
         joint = self.what in (ANGLE, SLIDE)

@@ -35,9 +35,9 @@ def searched(
     job, closed = make(BOX), []
     box = box_of(job, clearance, finest)
     found = search(box, Cells.whole(4), queries, 20, lambda *told: closed.append(told))
-    cells, kinds = (list(x) for x in zip(*closed, strict=True))
-    every = Cells.together(cells)
-    return job, box, found, every, np.concatenate(kinds)
+    every = Cells.together([cells for cells, _, _ in closed])
+    kinds = np.concatenate([kind for _, kind, _ in closed])
+    return job, box, found, every.at(kinds >= 0), kinds[kinds >= 0]
 
 
 def test_halves_fill_their_cell() -> None:

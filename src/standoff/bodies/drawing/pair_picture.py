@@ -44,6 +44,9 @@ SURROUND = 0.12
 ACROSS = 0.15
 """Greatest component of the normal towards the viewer with which nothing hides the witness line."""
 
+ABOVE_PLANE = 0.4
+"""Tangent of the angle from which the plane of a half-space is seen."""
+
 BETWEEN = 2.5
 """Drawing order of the witness line: after the body behind, before the one in front."""
 
@@ -84,18 +87,24 @@ def view_across(normal: Array) -> tuple[float, float]:
     if np.linalg.norm(level) < LEVEL_ENOUGH:
         towards = direction_to_viewer((USUAL_VIEW[0], USUAL_VIEW[1] + 90.0))
         level = towards - (towards @ normal) * normal
-    level /= np.linalg.norm(level)
-    elevation = np.degrees(np.arcsin(np.clip(level[2], -1.0, 1.0)))
-    return float(elevation), float(np.degrees(np.arctan2(level[1], level[0])))
+    return angles_of(level)
+
+
+def angles_of(towards: Array) -> tuple[float, float]:
+    """Elevation and azimuth [degrees] of a direction to the viewer."""
+    towards = towards / np.linalg.norm(towards)
+    elevation = np.degrees(np.arcsin(np.clip(towards[2], -1.0, 1.0)))
+    return float(elevation), float(np.degrees(np.arctan2(towards[1], towards[0])))
 
 
 def cloud_of(solids: tuple[Solid, Solid], shown: Shown) -> Array:
-    """World points of both bodies, (n, 3)."""
+    """World points of both bodies, (n, 3); beside a half-space, of the other and both witnesses."""
     placed = [
         solid.points @ pose[:9].reshape(3, 3).T + pose[9:]
         for solid, pose in zip(solids, shown.poses, strict=True)
+        if solid.body.bounded
     ]
-    return np.concatenate(placed)
+    return np.concatenate([*placed, *([] if len(placed) == 2 else [shown.points])])
 
 
 def seen_from(cloud: Array, towards: Array) -> Array:
@@ -194,10 +203,20 @@ def pair_figure(
     """Return the picture of two bodies and an answer."""
     figure = new_figure()
     axes = axes_of(figure, solids[0].body.dimension == 2)
-    chosen = view_across(shown.normal) if view is None else view
+    chosen = _usual_view(solids, shown) if view is None else view
     draw_pair(axes, solids, shown, chosen, cloud_of(solids, shown), unit)
     add_legend(figure, solids, shown, unit)
     return figure
+
+
+def _usual_view(solids: tuple[Solid, Solid], shown: Shown) -> tuple[float, float]:
+    """Across the normal; of a half-space somewhat from above its plane, which is else a line."""
+    view = view_across(shown.normal)
+    towards = direction_to_viewer(view)
+    for solid, sign in zip(solids, (1.0, -1.0), strict=True):
+        if not solid.body.bounded and np.isfinite(shown.normal).all():
+            towards = towards + sign * ABOVE_PLANE * shown.normal
+    return angles_of(towards)
 
 
 def add_legend(figure: Figure, solids: tuple[Solid, Solid], shown: Shown, unit: str) -> None:

@@ -24,7 +24,7 @@ TOGETHER = 1 << 18
 """Cells of one level that are gone on with together; more of them are parted, each part with its
 part of the queries. A cell takes some 200 B."""
 
-Recorded = Callable[[Cells, Whole], None]
+Recorded = Callable[[Cells, Whole, Whole], None]
 
 
 def search(
@@ -41,7 +41,8 @@ def search(
     most : int
         Places that each list of the summary holds.
     record : callable, optional
-        Called with cells, and the `Kind` of each, as they are closed.
+        Called with cells as they are looked at, the `Kind` of each, or -1, and along which
+        parameter that is then halved.
     """
     return _Search(box, most, record).run(first, queries)
 
@@ -75,8 +76,7 @@ class _Search:
             looked = self.box.look(block)
             self._count(block, looked)
             if self.record is not None:
-                closed = np.flatnonzero(looked.kind >= 0)
-                self.record(block.at(closed), looked.kind[closed])
+                self.record(block, looked.kind, looked.along)
             left = np.flatnonzero(looked.kind < 0)
             some = block.at(left)._replace(known=looked.known[left])
             rest.append(some.halved(looked.along[left]))
@@ -111,7 +111,7 @@ class _Search:
         self.found.close(cells.levels, Kind.OPEN, unknown)
         self.found.open.add(self._places(cells, looked, np.arange(n)))
         if self.record is not None:
-            self.record(cells, looked.kind)
+            self.record(cells, looked.kind, none)
 
 
 def _parted(cells: Cells, queries: int) -> list[tuple[Cells, int]]:
