@@ -37,7 +37,7 @@ def search(
     box : ParameterBox
     first : Cells
     queries : int
-        Most distances that are asked for; the last level may take some more.
+        Most distances that are asked for; of many pairs, the last cells may take some more.
     most : int
         Places that each list of the summary holds.
     record : callable, optional
@@ -56,23 +56,25 @@ class _Search:
         waiting = [(first, queries)]
         while waiting:
             cells, left = waiting.pop()
-            while len(cells.place):
-                if left <= 0:
-                    self._leave(cells)
-                    break
+            while len(cells.place) and left > 0:
                 if len(cells.place) > TOGETHER:
                     waiting += _parted(cells, left)
+                    cells = cells.at(slice(0))
                     break
                 before = self.found.queries
-                cells = self._level(cells)
+                cells = self._level(cells, left)
                 left -= self.found.queries - before
+            self._leave(cells)
         return self.found
 
-    def _level(self, cells: Cells) -> Cells:
-        """Look at all cells; returns what those that were not decided are halved into."""
-        rest = []
-        for start in range(0, len(cells.place), self.box.block):
-            block = cells.at(slice(start, start + self.box.block))
+    def _level(self, cells: Cells, queries: int) -> Cells:
+        """Look at cells while there are queries; returns what those that were not decided are
+        halved into, and those that were not looked at."""
+        rest, start, end = [], 0, self.found.queries + queries
+        while start < len(cells.place) and self.found.queries < end:
+            # most cells take a query each
+            block = cells.at(slice(start, start + min(self.box.block, end - self.found.queries)))
+            start += len(block.place)
             looked = self.box.look(block)
             self._count(block, looked)
             if self.record is not None:
@@ -80,7 +82,7 @@ class _Search:
             left = np.flatnonzero(looked.kind < 0)
             some = block.at(left)._replace(known=looked.known[left])
             rest.append(some.halved(looked.along[left]))
-        return Cells.together(rest)
+        return Cells.together([*rest, cells.at(slice(start, None))])
 
     def _count(self, cells: Cells, looked: Looked) -> None:
         found = self.found
@@ -106,6 +108,8 @@ class _Search:
     def _leave(self, cells: Cells) -> None:
         """Count cells that no queries were left for."""
         n = len(cells.place)
+        if not n:
+            return
         none, unknown = np.zeros(n, dtype=np.int64), np.full(n, -np.inf)
         looked = Looked(none + Kind.OPEN, none, unknown, np.full(n, np.nan), 0, 0, cells.known)
         self.found.close(cells.levels, Kind.OPEN, unknown)
