@@ -63,6 +63,8 @@ def check_proof_options(command: SweepCommand) -> None:
     clearance_of(command.prove)
     if command.row is not None:
         raise CommandError("--row and --prove: a proof has no rows; give one of them")
+    if command.page is not None:
+        raise CommandError("--page: shows rows, and a proof has none; leave it out")
     if command.plot is not None:
         raise CommandError(
             "--plot: draws the histogram of rows, and a proof has none; leave it out"

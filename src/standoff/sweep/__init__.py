@@ -8,10 +8,14 @@ if TYPE_CHECKING:
     from standoff.sweep.estimate import Estimate, estimated
     from standoff.sweep.folder import FolderError
     from standoff.sweep.job import Bins, Job, Keep
+    from standoff.sweep.proof.effort import Effort
+    from standoff.sweep.proof.proof import Proof
+    from standoff.sweep.proof.report import ProofReport
+    from standoff.sweep.proof.summary import Kind, Places, ProofSummary
     from standoff.sweep.reading import load_job
     from standoff.sweep.report import Report
     from standoff.sweep.rows import Rows
-    from standoff.sweep.run import run_sweep
+    from standoff.sweep.run import run_proof, run_sweep
     from standoff.sweep.summary import Summary
 else:
     __getattr__, __dir__ = on_demand(
@@ -20,9 +24,13 @@ else:
             "standoff.sweep.estimate": ("Estimate", "estimated"),
             "standoff.sweep.folder": ("FolderError",),
             "standoff.sweep.job": ("Bins", "Job", "Keep"),
+            "standoff.sweep.proof.effort": ("Effort",),
+            "standoff.sweep.proof.proof": ("Proof",),
+            "standoff.sweep.proof.report": ("ProofReport",),
+            "standoff.sweep.proof.summary": ("Kind", "Places", "ProofSummary"),
             "standoff.sweep.reading": ("load_job",),
             "standoff.sweep.report": ("Report",),
-            "standoff.sweep.run": ("run_sweep",),
+            "standoff.sweep.run": ("run_proof", "run_sweep"),
             "standoff.sweep.rows": ("Rows",),
             "standoff.sweep.summary": ("Summary",),
         },
@@ -30,14 +38,21 @@ else:
 
 __all__ = [
     "Bins",
+    "Effort",
     "Estimate",
     "FolderError",
     "Job",
     "Keep",
+    "Kind",
+    "Places",
+    "Proof",
+    "ProofReport",
+    "ProofSummary",
     "Report",
     "Rows",
     "Summary",
     "estimated",
     "load_job",
+    "run_proof",
     "run_sweep",
 ]
