@@ -1,16 +1,20 @@
 """Rows a second of a sweep, with one process and with two, beside `so.distances` on the same rows.
 
 Run from the repository's root: ``python -m benchmarks.sweep [--rows 1000000] [--kind sobol]``,
-on a busy machine with ``--cpu``.
-The pair is two ellipsoids, most of them apart; rounds of the three take turns, and the best of each
-counts. Of the sweeps only the time of their shards is taken, without starting the processes.
+on a busy machine with ``--cpu``; with ``--cluster`` beside two workers of a local cluster of Dask.
+The pair is two ellipsoids, most of them apart; rounds of all take turns, and the best of each
+counts. Of the sweeps only the time of their shards is taken, without starting the processes. With
+``--cluster`` the files of all runs are compared too: they are the same bytes.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import tempfile
 import time
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 
 from standoff import distances
@@ -64,9 +68,10 @@ BLOCK = 8192
 """Rows of a call of `so.distances`: many more, and memory is what is measured."""
 
 
-SHARDS = 6
+SHARDS, SHARDS_ON_CLUSTER = 6, 24
 """A first one for each process, and some to be timed: of 10⁵ rows and more, so that what a shard
-costs by itself, some 7 ms, is as little beside them as it is in earnest."""
+costs by itself, some 7 ms, is as little beside them as it is in earnest. More of them where two
+kinds of two workers are compared, of which one may wait for the last shard of the other."""
 
 
 def plain(job: Job, *, cpu: bool, with_poses: bool) -> float:
@@ -84,21 +89,59 @@ def plain(job: Job, *, cpu: bool, with_poses: bool) -> float:
     return taken / job.rows
 
 
-def swept(job: Job, workers: int, *, cpu: bool) -> float:
-    """Time of a sweep, from its first shard on, s a row."""
+digests: set[str] = set()
+"""Of the files of all runs."""
+
+
+def digest_of_files(folder: Path) -> str:
+    """SHA-256 of all files and their names."""
+    found = hashlib.sha256()
+    for file in sorted(folder.rglob("*.json")):
+        found.update(file.name.encode() + b"\0" + file.read_bytes())
+    return found.hexdigest()
+
+
+def swept(job: Job, workers: int, *, cpu: bool = False, cluster: str | None = None) -> float:
+    """Time of a sweep, from its first shard on, s a row; with a cluster, `workers` are its own."""
     seen: list[tuple[float, int]] = []
     clock = time.process_time if cpu else time.perf_counter
     with tempfile.TemporaryDirectory() as folder:
         run_sweep(
             job,
             Path(folder),
-            workers=workers,
+            workers=workers if cluster is None else 1,
+            cluster=cluster,
             progress=lambda done, _: seen.append((clock(), done)),
         )
+        digests.add(digest_of_files(Path(folder)))
     # With several processes the first shards end together: from then on all of them work.
     start = 0 if workers == 1 else workers
     (began, before), (ended, after) = seen[start], seen[-1]
     return (ended - began) / (after - before)
+
+
+def local_cluster(held: ExitStack) -> str:
+    """Start a cluster of two processes of one thread each; returns its address."""
+    from distributed import LocalCluster
+
+    cluster = held.enter_context(
+        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, protocol="tcp")
+    )
+    return str(cluster.scheduler_address)
+
+
+def runs_of(job: Job, *, cpu: bool, cluster: str | None) -> dict[str, Callable[[], float]]:
+    """What is timed, by name."""
+    runs = {
+        "so.distances": lambda: plain(job, cpu=cpu, with_poses=False),
+        "with their poses": lambda: plain(job, cpu=cpu, with_poses=True),
+        "sweep, 1 process": lambda: swept(job, 1, cpu=cpu),
+    }
+    if not cpu:
+        runs["sweep, 2 processes"] = lambda: swept(job, 2)
+    if cluster is not None:
+        runs["sweep, Dask, 2 workers"] = lambda: swept(job, 2, cluster=cluster)
+    return runs
 
 
 def main() -> None:
@@ -107,22 +150,17 @@ def main() -> None:
     parser.add_argument("--kind", default="sobol")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--cpu", action="store_true", help="time of the processor; one process")
+    parser.add_argument("--cluster", action="store_true", help="a local cluster of Dask as well")
     given = parser.parse_args()
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, ExitStack() as held:
         folder = Path(name)
         (folder / "scene.toml").write_text(SCENE, encoding="utf-8")
-        text = JOB.format(kind=given.kind, rows=given.rows, shard=max(1, given.rows // SHARDS))
+        shard = max(1, given.rows // (SHARDS_ON_CLUSTER if given.cluster else SHARDS))
+        text = JOB.format(kind=given.kind, rows=given.rows, shard=shard)
         (folder / "job.toml").write_text(text, encoding="utf-8")
         job = load_job(folder / "job.toml")
-        job.distances(0, 1)
-        runs = {
-            "so.distances": lambda: plain(job, cpu=given.cpu, with_poses=False),
-            "with their poses": lambda: plain(job, cpu=given.cpu, with_poses=True),
-            "sweep, 1 process": lambda: swept(job, 1, cpu=given.cpu),
-            "sweep, 2 processes": lambda: swept(job, 2, cpu=given.cpu),
-        }
-        if given.cpu:
-            del runs["sweep, 2 processes"]
+        job.answers(0, 1)
+        runs = runs_of(job, cpu=given.cpu, cluster=local_cluster(held) if given.cluster else None)
         best = dict.fromkeys(runs, float("inf"))
         for _ in range(given.rounds):
             for told, run in runs.items():
@@ -130,8 +168,12 @@ def main() -> None:
         for told, seconds in best.items():
             share = seconds / best["so.distances"]
             print(
-                f"{told:20} {seconds * 1e6:6.2f} µs a row, {1 / seconds:9.0f} rows/s, {share:.2f}"
+                f"{told:22} {seconds * 1e6:6.2f} µs a row, {1 / seconds:9.0f} rows/s, {share:.2f}"
             )
+        if given.cluster:
+            ratio = best["sweep, 2 processes"] / best["sweep, Dask, 2 workers"]
+            same = "the same" if len(digests) == 1 else "NOT the same"
+            print(f"Dask has {ratio:.0%} of the rows/s of two processes; all wrote {same} bytes")
 
 
 if __name__ == "__main__":

@@ -262,6 +262,14 @@ def test_a_job_and_a_scene_do_not_speak_to_the_terminal(
     ended = standoff("sweep", file, "-o", out)
     assert "title was" in ended.err
     assert obeyed(ended.err) == []
+    text = shown.replace("scene = ", "world = ").replace("worst = 40", "worst = 2")
+    file.write_text(f"title = {toml(OBEYED)}\n{text}".replace("= 3000", "= 30"), encoding="utf-8")
+    page = tmp_path / "page.html"
+    for given in (["-o", tmp_path / "world", "--page", page], ["--row", 3], ["--row", 3, "--json"]):
+        ended = standoff("sweep", file, *given)
+        assert ended.code in (0, 3), ended.err
+        assert obeyed(ended.out + ended.err) == []
+    assert obeyed(page.read_text(encoding="utf-8")) == []
 
 
 def test_pictures(standoff: Standoff, job: Path, tmp_path: Path) -> None:

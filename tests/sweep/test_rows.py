@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,10 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import kstest
 
 import standoff as so
+from standoff.sweep.rows import Rows
 from standoff.sweep.sample_file import SampleFile
+from standoff.sweep.subjects import pair as pairs
+from standoff.tracking.status import Status
 from sweep.conftest import JOB, TOP, Make
 
 ROUNDOFF = 1e-14
@@ -96,6 +100,30 @@ def test_a_horizon(make: Make) -> None:
     assert (full.distance[far] > 1.0).all()
     # with a horizon rows of ellipsoids take the general code
     np.testing.assert_allclose(full.distance[~far], cut.distance[~far], rtol=0.0, atol=ROUNDOFF)
+
+
+def test_poses_that_are_not_looked_at_again_give_the_same_bits(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job, asked = make(), []
+    looked_at = Rows.of(0, job.distances(0, 500).rows)
+    real = pairs.rows_at_made_poses
+    monkeypatch.setattr(pairs, "rows_at_made_poses", lambda *given: asked.append(1) or real(*given))
+    for column, other in zip(job.answers(0, 500), looked_at, strict=True):
+        assert column.tobytes() == other.tobytes()
+    assert len(asked) == 1
+    # too far away for a pose, so that it is refused: of the other rows, the same
+    far = make(JOB.replace("to = 5.0", "to = 1e101"))
+    some = far.answers(0, 50)
+    assert len(asked) == 1
+    assert np.array_equal(some.status, Rows.of(0, far.distances(0, 50).rows).status)
+    assert Status.REFUSED.value in some.status
+    # a home that is off by more than half of what is repaired
+    turn = np.array([[1.0, 7e-10, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    home = so.Pose(turn, [0.0, 0.0, 5.0])
+    off = replace(job, subject=replace(job.pair, homes=(home, job.homes[1])))
+    assert np.array_equal(off.answers(0, 50).distance, off.distances(0, 50).distance)
+    assert len(asked) == 1
 
 
 FILE = """{top}[parameters.x]

@@ -151,7 +151,11 @@ def test_rows_of_a_world_are_its_answers(tmp_path: Path) -> None:
     world, scene = job.subject.world, job.subject.scene  # type: ignore[attr-defined]
     rows, poses = job.answers(0, 60), job.subject.poses(job.parameters, job.numbers(0, 60))  # type: ignore[attr-defined]
     assert world.moving == ("tool", "ball")
-    nearest = set()
+    numbers, nearest = job.numbers(0, 60), set()
+    np.testing.assert_array_equal(poses[:, 0, :3, 3], numbers[:, :1] * [1.0, 0.0, 0.0])
+    at_ball = [1.5, 0.0, 0.0] + numbers[:, 4:] * [0.0, 0.0, 1.0]
+    np.testing.assert_array_equal(poses[:, 1, :3, 3], at_ball)
+    assert (poses[:, 1, :3, :3] == np.eye(3)).all()
     for k, frame in enumerate(poses):
         answer = world.distances(frame)
         assert answer.closest is not None
@@ -244,14 +248,8 @@ def test_what_is_inside_a_solid_is_nearest_of_all(tmp_path: Path, kind: str) -> 
     assert rows.lower_bound[0] == -np.inf
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        "world",
-        pytest.param("robot", marks=pytest.mark.soak),
-        pytest.param("solids", marks=pytest.mark.soak),
-    ],
-)
+@pytest.mark.soak
+@pytest.mark.parametrize("kind", list(KINDS))
 def test_two_processes_write_the_same_bytes(tmp_path: Path, kind: str) -> None:
     if kind == "robot":
         pytest.importorskip("mujoco")

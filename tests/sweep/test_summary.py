@@ -10,6 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
+from standoff.sweep.exact_sum import exact_sum
 from standoff.sweep.job import Bins, Job, Keep
 from standoff.sweep.rows import Rows
 from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
@@ -153,3 +154,29 @@ def test_a_damaged_shard_is_refused(make: Make) -> None:
     other = make(JOB.replace("rows = 3000", "rows = 1000").replace("seed = 5", "seed = 6"))
     with pytest.raises(NotThisShard, match="its job"):
         read_shard(other, "code", 1, text.encode())
+
+
+def test_sums_are_rounded_once() -> None:
+    """Those of `math.fsum`, bit for bit: of magnitudes far apart, of what cancels, of few."""
+    rng = np.random.default_rng(0)
+    for k in range(600):
+        n = 8192 if k % 100 == 0 else int(rng.integers(0, 200))
+        reach = (1, 20, 300)[k % 3]
+        values = rng.normal(size=n) * 10.0 ** rng.uniform(-reach, reach, n)
+        if k % 4 == 0:
+            slight = 1.0 + rng.choice([0.0, 1e-16, 1e-8])
+            values = np.concatenate([values, -values[::-1] * slight])
+        if k % 5 == 0:
+            values[rng.random(len(values)) < 0.5] = 0.0
+        assert exact_sum(values) == math.fsum(values.tolist())
+
+
+def test_many_bins_and_numbers_at_their_ends() -> None:
+    bins = Bins(0.1, 0.7, 6)
+    values = np.concatenate([bins.edges, np.nextafter(bins.edges, -1.0), [np.nan, -5.0, 9.0]])
+    whole_numbers = np.arange(len(values))
+    found = Summary(Keep(worst=1, bins=bins))
+    none = np.full(len(values), -1)
+    found.add_rows(Rows(whole_numbers, values, values, np.zeros(len(values), np.int64), none))
+    assert found.bins.tolist() == [2] * 6
+    assert found.outside.tolist() == [2, 2, 1]

@@ -1,4 +1,4 @@
-"""``standoff sweep``: a pair at very many poses; totals, a histogram and the worst rows."""
+"""``standoff sweep``: distances at very many poses; totals, a histogram and the worst rows."""
 
 from __future__ import annotations
 

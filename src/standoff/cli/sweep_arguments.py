@@ -11,7 +11,7 @@ from tyro.conf import Positional, arg
 
 @dataclass(frozen=True)
 class SweepCommand:
-    """Find the distances of a pair at very many poses, and keep totals and the worst rows.
+    """Find the distances of a pair, a world or a robot at very many poses, kept as totals.
 
     Stopped at any moment, the same command goes on where it was.
 

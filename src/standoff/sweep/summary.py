@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.sweep.exact_sum import exact_sum
 from standoff.sweep.job import Keep
 from standoff.sweep.rows import Rows
 from standoff.tracking.answers import PROVEN
@@ -48,7 +49,7 @@ class Spread:
         low, high = int(values.argmin()), int(values.argmax())
         part = Spread(
             len(values),
-            [math.fsum(values.tolist())],
+            [exact_sum(values)],
             float(values[low]),
             int(row[low]),
             float(values[high]),
@@ -119,6 +120,7 @@ class Summary:
         self.statuses = np.zeros(len(BY_NUMBER), dtype=np.int64)
         self.distance, self.lower_bound = Spread(), Spread()
         self.bins = np.zeros(0 if keep.bins is None else keep.bins.number, dtype=np.int64)
+        self._edges = np.empty(0) if keep.bins is None else keep.bins.edges
         self.outside = np.zeros(3, dtype=np.int64)  # of the bins: under, over, no distance
         self.below = Listed(keep.most_below)
         self.uncertified = Listed(MOST_UNCERTIFIED)
@@ -167,11 +169,11 @@ class Summary:
     def _count_bins(self, distance: Array) -> None:
         if self.keep.bins is None:
             return
-        known = distance[~np.isnan(distance)]
-        bin_of = np.searchsorted(self.keep.bins.edges, known, side="right")
-        counts = np.bincount(bin_of, minlength=len(self.bins) + 2)
-        self.bins += counts[1:-1]
-        self.outside += [counts[0], counts[-1], len(distance) - len(known)]
+        known = np.sort(distance[~np.isnan(distance)])
+        # Of sorted rows the ends of the bins are found, which are fewer.
+        ends = np.searchsorted(known, self._edges)
+        self.bins += np.diff(ends)
+        self.outside += [ends[0], len(known) - ends[-1], len(distance) - len(known)]
 
     def _add_worst(self, rows: Rows) -> None:
         if len(rows.row):

@@ -262,6 +262,22 @@ def answered_rows(
     return Distances((a, b), rows, (of_a, of_b), repaired, errors)
 
 
+def rows_at_made_poses(a: Body, b: Body, poses: tuple[Array, Array], within: float | None) -> Array:
+    """The rows of `distances`, (n, N_OUT), of two spatial bodies at poses that are not looked at.
+
+    Parameters
+    ----------
+    a, b : Body
+        Checked to be a pair.
+    poses : two (n, 4, 4) arrays, or (1, 4, 4)
+        Contiguous, and known to be such that `distances` would repair and refuse none.
+    within : float or None
+    """
+    rows = np.full((max(map(len, poses)), K.N_OUT), np.nan)
+    _cold(cold_table(a, b, within).address, poses, rows, 1)
+    return rows
+
+
 def _tracker(a: Body, b: Body, within: float | None) -> Tracker:
     if within is None:
         return Tracker(a, b)

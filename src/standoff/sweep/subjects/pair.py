@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose
+from standoff.motion.rotations import defect
 from standoff.scene import Scene
 from standoff.sweep.parameters import Parameter, moved
 from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.subject import Alone, Subject
-from standoff.tracking.many_distances import Distances, answered_rows
+from standoff.sweep.tolerances import SOUND_HOME
+from standoff.tracking.many_distances import Distances, answered_rows, rows_at_made_poses
 
 Array = NDArray[np.float64]
 
@@ -68,7 +72,19 @@ class ConvexPair(Subject):
         return answered_rows(*self.bodies, *self.poses(parameters, numbers), within=self.within)
 
     def rows(self, parameters: Sequence[Parameter], numbers: Array, first: int) -> Rows:
+        poses = self.poses(parameters, numbers)
+        if self._sound_homes and all(_near(x) for x in poses):
+            return Rows.of(first, rows_at_made_poses(*self.bodies, poses, self.within))
         return Rows.of(first, self.distances(parameters, numbers).rows)
+
+    @cached_property
+    def _sound_homes(self) -> bool:
+        """Are the poses that are made of them rotations, so that none is to be repaired?
+
+        Of planar bodies their tilt is looked at as well: they are left to `distances`.
+        """
+        off = max(float(defect(pose.rotation)) for pose in self.homes)
+        return not self.planar and off <= SOUND_HOME * ROTATION
 
     def alone(self, parameters: Sequence[Parameter], numbers: Array, row: int) -> Alone:
         found = self.distances(parameters, numbers)
@@ -85,3 +101,8 @@ class ConvexPair(Subject):
 
     def reported(self) -> dict[str, Any]:
         return dict(zip("ab", self.scene.pair, strict=True))
+
+
+def _near(poses: Array) -> bool:
+    """Are all positions of poses (n, 4, 4) finite, and so near that none is refused?"""
+    return bool(np.abs(poses[:, :3, 3]).max() < FARTHEST / 3.0)
