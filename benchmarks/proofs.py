@@ -21,7 +21,7 @@ from scipy.optimize import minimize
 from standoff.robots.proof import Verdict
 from standoff.sweep.job import Job
 from standoff.sweep.parameters import in_ranges
-from standoff.sweep.proof.pair_box import PairBox
+from standoff.sweep.proof.proof import Proof
 from standoff.sweep.proof.search import search
 from standoff.sweep.proof.summary import Kind
 from standoff.sweep.reading import load_job
@@ -94,7 +94,7 @@ def main() -> None:
                 job = box_of(Path(folder), columns, scale)
             least, told = least_of(job), ""
             for share in SHARES:
-                box = PairBox(job.pair, job.parameters, share * least)
+                box = Proof(job, share * least).box
                 box.finest = 1e-6
                 began = time.thread_time()
                 found = search(box, box.whole, given.queries, 5)

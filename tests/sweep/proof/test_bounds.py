@@ -13,7 +13,8 @@ from standoff.kernels.body import layout as L
 from standoff.sweep.job import Job
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.extent import farthest
-from standoff.sweep.proof.pair_box import TOGETHER, PairBox
+from standoff.sweep.proof.pair_box import TOGETHER
+from standoff.sweep.proof.proof import Proof
 from standoff.tracking.many_distances import answered_rows
 from sweep.conftest import TOP, Make
 
@@ -116,7 +117,7 @@ def points_in(rng: np.random.Generator, cells: Cells) -> np.ndarray:
 
 
 def check_cells(job: Job, rng: np.random.Generator, n: int = 1000) -> np.ndarray:
-    bounds = PairBox(job.pair, job.parameters, 0.0)
+    bounds = Proof(job, 0.0).box
     cells = some_cells(rng, n, len(job.parameters))
     found = answered_rows(*job.bodies, *job.poses(bounds.numbers(cells)))
     told = bounds.bounds(cells, found)
@@ -160,7 +161,7 @@ def test_along_any_normal_a_turn_adds_no_more_to_the_support(
     vertices = rng.normal([1.0, 0.5, -0.3], size=(20, 3))
     job = make(SPATIAL)
     job = with_bodies(job, (so.shapes.polytope(vertices), job.bodies[1]))
-    bounds = PairBox(job.pair, job.parameters, 0.0)
+    bounds = Proof(job, 0.0).box
     mover = bounds.movers[0]
     cells = some_cells(rng, 3000, len(job.parameters))
     at, half = bounds.numbers(cells) * bounds.unit, bounds.half(cells)

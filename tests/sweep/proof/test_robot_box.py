@@ -42,6 +42,7 @@ queries = 20_000
 
 @pytest.fixture
 def job(tmp_path: Path) -> Job:
+    pytest.importorskip("mujoco")
     file = tmp_path / "job.toml"
     file.write_text(JOB, encoding="utf-8")
     return load_job(file)

@@ -10,6 +10,7 @@ import pytest
 from standoff.sweep.job import Job
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.pair_box import PairBox
+from standoff.sweep.proof.proof import Proof
 from standoff.sweep.proof.search import TOGETHER, _parted, search
 from standoff.sweep.proof.summary import Kind, ProofSummary
 from standoff.tracking.many_distances import answered_rows
@@ -23,7 +24,8 @@ rows = 2000
 
 
 def box_of(job: Job, clearance: float, finest: float) -> PairBox:
-    box = PairBox(job.pair, job.parameters, clearance)
+    box = Proof(job, clearance).box
+    assert isinstance(box, PairBox)
     box.finest = finest
     return box
 

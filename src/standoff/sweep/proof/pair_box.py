@@ -19,23 +19,27 @@ From above, the distance is at most that in the middle and all that the bodies' 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.body import Body
 from standoff.impact.moment import Box
 from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
+from standoff.motion import Pose
 from standoff.sweep.parameters import SHIFTS, TURNS, Parameter
+from standoff.sweep.parameters import moved as moved_poses
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.extent import farthest
 from standoff.sweep.proof.tolerances import CELL_ROUNDINGS, RANGE_ROUNDINGS, UNIT_NORMAL
-from standoff.sweep.subjects.pair import ConvexPair
 from standoff.tracking.answers import proven
 from standoff.tracking.many_distances import Distances, answered_rows
 
 Array = NDArray[np.float64]
+Whole = NDArray[np.int64]
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -43,24 +47,39 @@ TOGETHER = -1
 """Of all turns of a body together."""
 
 
+class PlacedBody(NamedTuple):
+    """A convex body, or a piece of one, and where it is where all parameters are zero.
+
+    Attributes
+    ----------
+    name : str
+        That parameters move it by.
+    body : Body
+    home : Pose
+        In the world.
+    """
+
+    name: str
+    body: Body
+    home: Pose
+
+
 class Mover:
     """A body, and the parameters that move it.
 
     Parameters
     ----------
-    pair : ConvexPair
-    side : int
-        0 for A, 1 for B.
+    placed : PlacedBody
     parameters : sequence of Parameter
-        Of both.
+        Its own and others.
     """
 
-    def __init__(self, pair: ConvexPair, side: int, parameters: Sequence[Parameter]) -> None:
-        self.body, name = pair.bodies[side], pair.scene.pair[side]
-        own = [(k, p) for k, p in enumerate(parameters) if p.moves == name]
+    def __init__(self, placed: PlacedBody, parameters: Sequence[Parameter]) -> None:
+        self.name, self.body, self.home_pose = placed
+        own = [(k, p) for k, p in enumerate(parameters) if p.moves == self.name]
         self.shifts = [(k, SHIFTS.index(p.what)) for k, p in own if p.what in SHIFTS]
         self.turns = [(k, TURNS.index(p.what)) for k, p in own if p.what in TURNS]
-        self.home = pair.homes[side].rotation
+        self.home = self.home_pose.rotation
         self.box = Box(self.body)
         self.radius = float(self.body.reals[L.RADIUS])
         self.far = farthest(self.body) if self.turns else 0.0
@@ -158,23 +177,27 @@ class PairBox(ParameterBox):
 
     Parameters
     ----------
-    pair : ConvexPair
+    pair : pair of PlacedBody
     parameters : sequence of Parameter
-        Shifts and turns.
+        Shifts and turns, of these bodies and of others.
     clearance : float
     """
 
     block = 8192
     """Their poses and answers, some 5 MB, stay near the processor."""
 
-    def __init__(self, pair: ConvexPair, parameters: Sequence[Parameter], clearance: float) -> None:
+    def __init__(
+        self,
+        pair: tuple[PlacedBody, PlacedBody],
+        parameters: Sequence[Parameter],
+        clearance: float,
+    ) -> None:
         super().__init__(parameters, clearance)
-        self.pair = pair
-        self.movers = Mover(pair, 0, parameters), Mover(pair, 1, parameters)
+        self.movers = Mover(pair[0], parameters), Mover(pair[1], parameters)
         ends = np.array([abs(p.low) + abs(p.high) for p in parameters])
         self.doubt = RANGE_ROUNDINGS * EPS * ends
         self.unit = np.array([np.pi / 180.0 if p.degrees else 1.0 for p in parameters])
-        lengths = [float(np.abs(pose.translation).sum()) for pose in pair.homes]
+        lengths = [float(np.abs(pose.translation).sum()) for _, _, pose in pair]
         lengths += [float(ends[k]) for mover in self.movers for k, _ in mover.shifts]
         lengths += [mover.size for mover in self.movers]
         self.rounding = CELL_ROUNDINGS * EPS * sum(lengths)
@@ -183,21 +206,32 @@ class PairBox(ParameterBox):
         return self.moved(self.half(cells))
 
     def look(self, cells: Cells) -> Looked:
+        told, moved, asked = self.told(cells)
+        return self.decided(cells, moved, told, asked)
+
+    def told(self, cells: Cells) -> tuple[Told, Array, Whole]:
+        """Return what is told of cells, by a query in the middle where no ball is enough; how far
+        points move in them; and the number of queries, and of those that are not proven."""
         n = len(cells.place)
         moved, ways = self.moves(cells)
-        poses = self.pair.poses(self.parameters, self.numbers(cells))
+        numbers = self.numbers(cells)
+        poses = tuple(
+            moved_poses(mover.home_pose, mover.name, self.parameters, numbers)
+            for mover in self.movers
+        )
         lower = self.by_balls(poses, moved)
         told = Told(lower, np.full(n, np.inf), np.full(n, np.inf), ways.copy(), ways)
         ask = np.flatnonzero(~(lower >= self.clearance))
         doubtful = 0
         if len(ask):
-            found = answered_rows(*self.pair.bodies, *(x if len(x) == 1 else x[ask] for x in poses))
+            bodies = (mover.body for mover in self.movers)
+            found = answered_rows(*bodies, *(x if len(x) == 1 else x[ask] for x in poses))
             own = self.bounds(cells.at(ask), found)
             own = own._replace(lower=np.maximum(lower[ask], own.lower))
             for every, some in zip(told, own, strict=True):
                 every[ask] = some
             doubtful = int(np.count_nonzero(~proven(found.rows[:, K.STATUS])))
-        return self.decided(cells, moved, told, np.array([len(ask), doubtful]))
+        return told, moved, np.array([len(ask), doubtful])
 
     def half(self, cells: Cells) -> Array:
         """Return half sides (n, columns), of angles in rad, with what rounding may add."""
@@ -215,7 +249,7 @@ class PairBox(ParameterBox):
                 ways[:, k] = way
         return whole + self.rounding, ways
 
-    def by_balls(self, poses: tuple[Array, Array], moved: Array) -> Array:
+    def by_balls(self, poses: Sequence[Array], moved: Array) -> Array:
         """Return lower bounds of the distances that need no query."""
         centres = [
             np.sum(pose[:, :3, :3] * mover.box.middle, axis=2) + pose[:, :3, 3]

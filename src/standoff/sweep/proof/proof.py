@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from standoff.bodies.body import Body
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.sweep.job import Job, check_job, digest_of
-from standoff.sweep.parameters import UNIFORM
+from standoff.sweep.parameters import UNIFORM, Parameter
 from standoff.sweep.proof.box import ParameterBox
 from standoff.sweep.proof.cells import Cells
-from standoff.sweep.proof.pair_box import PairBox
+from standoff.sweep.proof.pair_box import PairBox, PlacedBody
 from standoff.sweep.proof.robot_box import RobotBox
 from standoff.sweep.proof.search import search
 from standoff.sweep.proof.summary import ProofSummary
 from standoff.sweep.proof.tolerances import FINEST_SHARE
+from standoff.sweep.proof.world_box import WorldBox
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.robot import RobotSubject
+from standoff.sweep.subjects.world import SceneWorld
 
 
 class Proof:
@@ -137,28 +140,35 @@ def _box(job: Job, clearance: float) -> ParameterBox:
                 "give 'turn_x', 'turn_y' and 'turn_z'",
                 "job",
             )
-    if isinstance(job.subject, ConvexPair):
-        _check_planes(job)
-        return PairBox(job.subject, job.parameters, clearance)
     if isinstance(job.subject, RobotSubject):
         return RobotBox(job.subject, job.parameters, clearance)
+    if isinstance(job.subject, SceneWorld):
+        _check_planes(job.subject.world.bodies, job.parameters)
+        return WorldBox(job.subject, job.parameters, clearance)
+    if isinstance(job.subject, ConvexPair):
+        subject = job.subject
+        placed = [
+            PlacedBody(*each)
+            for each in zip(subject.scene.pair, subject.bodies, subject.homes, strict=True)
+        ]
+        _check_planes({name: body for name, body, _ in placed}, job.parameters)
+        return PairBox((placed[0], placed[1]), job.parameters, clearance)
     raise StandoffError(
-        f"a proof is of a pair of convex bodies or of a robot, and this job is over "
-        f"{job.subject.name}",
+        f"a proof is of convex bodies or of a robot, and {job.subject.name} need not be convex",
         "job",
     )
 
 
-def _check_planes(job: Job) -> None:
+def _check_planes(bodies: Mapping[str, Any], parameters: Sequence[Parameter]) -> None:
     """Refuse turns of a half-space, whose points go infinitely far.
 
     Raises
     ------
     StandoffError
     """
-    for body, name in zip(job.bodies, job.scene.pair, strict=True):
-        turns = [p.name for p in job.parameters if p.moves == name and p.unit]
-        if turns and not body.bounded:
+    for name, body in bodies.items():
+        turns = [p.name for p in parameters if p.moves == name and p.unit]
+        if turns and isinstance(body, Body) and not body.bounded:
             raise StandoffError(
                 f"parameters.{turns[0]}: '{name}' is a half-space, and a turn moves its points "
                 "infinitely far: turn the other body, the other way",
