@@ -190,6 +190,33 @@ def test_along_any_normal_a_turn_adds_no_more_to_the_support(
     assert used > 0.9  # the bound is met, all but
 
 
+def test_a_turn_before_leads_the_normal_off_the_axis_of_the_next(
+    make: Make, rng: np.random.Generator
+) -> None:
+    """In the middle the normal is along the second turn's axis, about which it would not turn."""
+    job = make(SPATIAL)
+    box = Proof(job, 0.0).box
+    mover, cells = box.movers[0], some_cells(rng, 500, len(job.parameters))
+    at, half = box.numbers(cells) * box.unit, box.half(cells)
+    order = [k for k, p in enumerate(job.parameters) if p.moves == "tool" and p.what != "x"]
+    home, first = job.homes[0].rotation, Rotation.from_rotvec(at[:, order[:1]] * [[0.0, 0.0, 1.0]])
+    normal = first.apply([1.0, 0.0, 0.0]) @ home.T
+    bound, _ = mover.turned(normal, at, half)
+
+    def seen(angles: np.ndarray) -> np.ndarray:
+        turn = home @ Rotation.from_euler("ZXY", angles[:, order]).as_matrix()
+        return np.einsum("nij,ni->nj", turn, normal)
+
+    met = np.zeros(500)
+    for _ in range(50):
+        other = at + np.clip(rng.uniform(-1.5, 1.5, at.shape), -1.0, 1.0) * half
+        cosine = np.sum(seen(other) * seen(at), axis=1)
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+        assert (angle <= bound + 1e-7).all()
+        met = np.maximum(met, angle / bound)
+    assert met.max() > 0.9
+
+
 @pytest.mark.parametrize("name", BODIES)
 def test_the_farthest_point_is_found(name: str) -> None:
     body = BODIES[name]
