@@ -28,6 +28,7 @@ def spacing_poses() -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache
+@lru_cache
 def spacing_design() -> so.Design:
     return so.Design(SPACING["lens"], curvature=0.05, conic=-0.8, thickness=3.0)
 

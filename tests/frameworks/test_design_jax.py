@@ -52,10 +52,9 @@ def test_many_sets_by_vmap_and_as_arrays() -> None:
         assert found.shape == (3,)
         return found.sum()
 
-    expected = np.array(
-        [jax.grad(one, (0, 1))(*given) for given in zip(radii, shifts, strict=True)]
-    ).T
-    close(jax.jit(jax.vmap(jax.grad(one, (0, 1))))(radii, shifts), expected, 1e-12)
+    slopes = jax.grad(one, (0, 1))
+    expected = np.array([slopes(*given) for given in zip(radii, shifts, strict=True)]).T
+    close(jax.jit(jax.vmap(slopes))(radii, shifts), expected, 1e-12)
     close(jax.jit(jax.grad(total, (0, 1)))(radii, shifts), expected, 1e-12)
     # one set for all poses: the derivative is the sum of those of the rows
     same = jax.grad(lambda r: total(r, shifts))(1.1)

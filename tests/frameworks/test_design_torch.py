@@ -66,9 +66,8 @@ def test_many_sets_by_vmap_and_as_tensors() -> None:
         return standoff.torch.design_distance(LENS, EGG, {"radius": radius}, {}, home, pose)
 
     slope = torch.func.grad(distance)
-    expected = torch.stack(
-        [slope(r, p) for r, p in zip(radii.detach(), poses, strict=True)]
-    ).numpy()
+    pairs = zip(radii.detach(), poses, strict=True)
+    expected = torch.stack([slope(*pair) for pair in pairs]).numpy()
     close(torch.func.vmap(slope)(radii.detach(), poses), expected, 1e-12)
     distance(radii, poses).sum().backward()
     close(radii.grad, expected, 1e-12)

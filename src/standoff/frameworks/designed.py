@@ -268,15 +268,14 @@ def _set(
     for side, design, names, given in zip(
         "ab", (designs.a, designs.b), designs.names, (values[:of_a], values[of_a:]), strict=True
     ):
-        if isinstance(design, Body) or not names:
-            body = design if isinstance(design, Body) else design.body
-            made.append(design if isinstance(design, Body) else body)
-        else:
+        changed = design
+        if isinstance(design, Design) and names:
             told = tuple(np.ascontiguousarray(x, dtype=float).tobytes() for x in given)
-            of = _kept(design, names, told, side)
-            made.append(of)
-            body = of.body
+            changed = _kept(design, names, told, side)
+        body = changed.body if isinstance(changed, Design) else changed
         bodies.append(_convex(body, f"design_{side}"))
+        # a design none of whose parameters are given does not change
+        made.append(changed if names else bodies[-1])
     pair = ambient.Pair(bodies[0], bodies[1], designs.undefined)
     return Set(rows, (made[0], made[1]), pair, poses)
 
