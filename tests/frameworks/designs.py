@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import runpy
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,19 +16,6 @@ BOX = so.Design(so.shapes.box, size=[1.0, 1.0, 1.0])
 PARAMETERS = {"radius": 1.05, "offset": 0.4}, {"semi_axes": np.array([0.45, 0.33, 0.4])}
 """Of A and of B: not those of the designs themselves."""
 POSES = {name: (pose(q[:6]), pose(q[6:])) for name, q in (("apart", APART), ("overlap", INSIDE))}
-SPACING = runpy.run_path(str(Path(__file__).parents[2] / "examples/design/lens_spacing.py"))
-SPACED = 3.217009045
-"""Thickness that leaves the wanted gap [mm], by examples/design/lens_spacing.py."""
-
-
-def spacing_poses() -> tuple[np.ndarray, np.ndarray]:
-    return np.eye(4), so.Pose.exp([np.pi, 0.0, 0.0], [1.0, 0.0, 12.6]).matrix
-
-
-@lru_cache
-@lru_cache
-def spacing_design() -> so.Design:
-    return so.Design(SPACING["lens"], curvature=0.05, conic=-0.8, thickness=3.0)
 
 
 def answer_of(where: str, parameters: Any = PARAMETERS) -> Any:

@@ -83,13 +83,3 @@ def test_what_cannot_serve_is_refused() -> None:
         standoff.casadi.design_distance(1, EGG)  # type: ignore[arg-type]
     with pytest.raises(RuntimeError, match="params_a make no body"):
         DISTANCE(0.4, -1.0, np.ones(3), *POSES["apart"])
-
-
-def test_the_spacing_of_a_lens() -> None:
-    lens, other = designs.spacing_design().only("thickness"), designs.SPACING["next_element"]()
-    gap = standoff.casadi.design_distance(lens, other)
-    thickness = ca.MX.sym("t")
-    left = gap(thickness, *designs.spacing_poses()) - designs.SPACING["WANTED"]
-    better = thickness - left / ca.jacobian(left, thickness)
-    step = ca.Function("step", [thickness], [better])
-    assert abs(float(step(step(3.0))) - designs.SPACED) <= 1e-9

@@ -90,18 +90,3 @@ def test_what_cannot_serve_is_refused() -> None:
         distance(({"radios": 1.0}, {}))
     with pytest.raises(Exception, match=r"params_a make no body: with radius = -1\.0"):
         distance(({"radius": -1.0}, {})).block_until_ready()
-
-
-def test_the_spacing_of_a_lens() -> None:
-    lens, other = designs.spacing_design(), designs.SPACING["next_element"]()
-    poses = designs.spacing_poses()
-
-    @jax.jit
-    def gap(thickness: Any) -> Any:
-        return standoff.jax.design_distance(lens, other, {"thickness": thickness}, {}, *poses)
-
-    thickness = 3.0
-    for _ in range(2):
-        value, slope = jax.value_and_grad(gap)(thickness)
-        thickness -= float((value - designs.SPACING["WANTED"]) / slope)
-    assert abs(thickness - designs.SPACED) <= 1e-9

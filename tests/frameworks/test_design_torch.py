@@ -105,16 +105,3 @@ def test_what_cannot_serve_is_refused() -> None:
         asked(radius=1.0)
     with pytest.raises(StandoffError, match=r"params_a make no body: with radius = -1\.0"):
         asked(radius=leaf(-1.0))
-
-
-def test_the_spacing_of_a_lens() -> None:
-    lens, other = designs.spacing_design(), designs.SPACING["next_element"]()
-    poses = [torch.tensor(pose) for pose in designs.spacing_poses()]
-    thickness = leaf(3.0)
-    for _ in range(2):
-        given = {"thickness": thickness}, {}
-        gap = standoff.torch.design_distance(lens, other, *given, *poses)
-        (slope,) = torch.autograd.grad(gap, thickness)
-        with torch.no_grad():
-            thickness -= (gap - designs.SPACING["WANTED"]) / slope
-    assert abs(thickness.item() - designs.SPACED) <= 1e-9

@@ -125,9 +125,7 @@ def test_what_cannot_serve_is_refused() -> None:
         designed.value(BOTH, *wrong)
     for numbers in (-1.0, np.nan):
         wrong = arrays(({"radius": numbers, "offset": 0.4}, PARAMETERS[1]))
-        with pytest.raises(
-            StandoffError, match=r"params_a make no body: with offset = 0\.4, radius"
-        ):
+        with pytest.raises(StandoffError, match=r"params_a make no body: with offset = 0\.4"):
             designed.value(BOTH, *wrong)
     wrong = arrays(({"radius": np.array([1.0, 1.1, 1.0]), "offset": 0.4}, PARAMETERS[1]))
     wrong[-1] = np.array([POSES["apart"][1], POSES["apart"][1], 2 * np.eye(4)])
