@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
-from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError
+from standoff.checks.real_numbers import real_array, shown
+from standoff.errors import StandoffError, StandoffTypeError, UnreadableNumbers
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, Twist
 from standoff.motion.rotations import defect, without_rounding
@@ -170,7 +170,9 @@ def read_twists_of(
             found[row, :6] = flat_twist(twist, Pose.of(poses[row]))
     else:
         try:
-            array = np.asarray(twists, dtype=np.float64)
+            array = real_array(twists, copy=False)
+        except UnreadableNumbers as error:
+            raise StandoffError(f"twists {error}: {shown(twists)}", "twists", twists) from error
         except (TypeError, ValueError) as error:
             raise StandoffTypeError(
                 f"twists = {shown(twists)}: give (n, 6), or a mapping of names.", "twists", twists
