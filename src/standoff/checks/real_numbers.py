@@ -61,14 +61,15 @@ def check_readable(value: Any) -> None:
             given = given.ravel().tolist()
         if isinstance(given, list | tuple) and id(given) not in seen:
             seen.add(id(given))  # a list may hold itself
-            waiting += [item for item in given if isinstance(item, list | tuple) or _shares(item)]
-        elif _shares(given) and not isinstance(given, np.ndarray):
+            kinds = {kind for kind in set(map(type, given)) if _holds_numbers(kind)}
+            waiting += [item for item in given if type(item) in kinds] if kinds else []
+        elif not isinstance(given, list | tuple | np.ndarray) and _holds_numbers(type(given)):
             _check_device(given)
 
 
-def _shares(value: Any) -> bool:
-    """Is it an array, of NumPy or of a framework that shares its memory by DLPack?"""
-    return hasattr(type(value), "__dlpack_device__")
+def _holds_numbers(kind: type) -> bool:
+    """Is it a list, or an array of NumPy or of a framework that shares its memory by DLPack?"""
+    return issubclass(kind, list | tuple) or hasattr(kind, "__dlpack_device__")
 
 
 def _check_device(value: Any) -> None:
@@ -85,7 +86,7 @@ def _check_device(value: Any) -> None:
 
 def shape_of(value: Any) -> tuple[int, ...] | None:
     """Return the shape of what may be an array; None where its rows differ in length."""
-    if _shares(value) and hasattr(value, "shape"):
+    if hasattr(value, "__dlpack_device__") and hasattr(value, "shape"):
         return tuple(value.shape)
     try:
         # As objects, so that no element is read as a number, which a masked one would warn of.
