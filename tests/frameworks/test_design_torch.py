@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -105,3 +107,10 @@ def test_what_cannot_serve_is_refused() -> None:
         asked(radius=1.0)
     with pytest.raises(StandoffError, match=r"params_a make no body: with radius = -1\.0"):
         asked(radius=leaf(-1.0))
+
+
+def test_the_example_of_the_page_runs() -> None:
+    page = Path(__file__).parents[2] / "docs" / "design.md"
+    fence = re.compile(r"^```\{code-block\} python\n:class: torch\n(.*?)^```$", re.S | re.M)
+    (code,) = fence.findall(page.read_text("utf-8"))
+    exec(compile(code, page.name, "exec"), {})
