@@ -194,8 +194,7 @@ def _rates(designs: Designs, one: Set, found: ambient.Rows) -> list[Array]:
     kinds = [design if isinstance(design, Design) else None for design in one.designs]
     count = len(found.distance)
     told: tuple[Mapping[str, Any], ...] = ({}, {})
-    # a single answer without witness points has no shape gradient, and is refused there
-    if any(kinds) and not (count == 1 and found.lacking):
+    if any(kinds):
         by = shape_gradient(found.answers, a=kinds[0], b=kinds[1])
         told = (by.a, by.b)
     rates = []
