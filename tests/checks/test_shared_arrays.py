@@ -78,6 +78,29 @@ def test_answers_are_those_of_numpy_s_arrays(make: Callable[[np.ndarray], Any]) 
     assert design.body.digest == TOOL.digest
 
 
+def world() -> so.World:
+    ball = so.shapes.sphere(0.3)
+    return so.World({"a": ball, "b": ball}, within=3.0)
+
+
+@pytest.mark.parametrize("make", [Exported, of_torch])
+def test_frames_of_a_world(make: Callable[[np.ndarray], Any]) -> None:
+    balls, poses = world(), np.tile(np.eye(4), (5, 2, 1, 1))
+    poses[:, 1, 0, 3] = np.linspace(1.0, 2.0, 5)
+    twists = np.zeros((4, 2, 6))
+    twists[:, 1, 0] = 1.0
+    found = []
+    for form in (np.asarray, make):
+        state = balls.start(form(poses[0].copy()))
+        _, answers = balls.run(state, form(poses[1:]), form(twists))
+        found.append([(pair.distance, pair.rate) for each in answers for pair in each.pairs])
+    assert found[0] == found[1]
+    with pytest.raises(StandoffError, match="poses is on a device"):
+        balls.run(state, Exported(poses, GPU))
+    with pytest.raises(StandoffError, match="twists is on a device"):
+        balls.step(state, poses[1], Exported(twists[0], GPU))
+
+
 def test_an_array_on_a_device_is_refused() -> None:
     for call in (
         lambda: so.distances(LENS, TOOL, np.eye(4), Exported(POSES, GPU)),

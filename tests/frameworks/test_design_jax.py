@@ -52,7 +52,7 @@ def test_many_sets_by_vmap_and_as_arrays() -> None:
         assert found.shape == (3,)
         return found.sum()
 
-    slopes = jax.grad(one, (0, 1))
+    slopes = jax.jit(jax.grad(one, (0, 1)))
     expected = np.array([slopes(*given) for given in zip(radii, shifts, strict=True)]).T
     close(jax.jit(jax.vmap(slopes))(radii, shifts), expected, 1e-12)
     close(jax.jit(jax.grad(total, (0, 1)))(radii, shifts), expected, 1e-12)
