@@ -18,6 +18,7 @@ from standoff.errors import (
     MaskedNumbers,
     StandoffError,
     StandoffTypeError,
+    UnreadableNumbers,
     VoronoiError,
 )
 from standoff.scene import load_scene
@@ -94,7 +95,8 @@ def test_every_error_is_a_value_error_and_what_it_was_before() -> None:
     for kind in (BodyError, FormulaError, MaskedNumbers, SceneError, StandoffTypeError):
         assert issubclass(kind, StandoffError)
     assert issubclass(StandoffError, ValueError)
-    assert issubclass(MaskedNumbers, StandoffTypeError)
+    assert issubclass(MaskedNumbers, UnreadableNumbers)
+    assert issubclass(UnreadableNumbers, StandoffTypeError)
     assert issubclass(StandoffTypeError, TypeError)
     assert issubclass(VoronoiError, StandoffError)
     assert issubclass(VoronoiError, RuntimeError)

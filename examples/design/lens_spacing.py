@@ -64,10 +64,10 @@ def thickness_of(design, other, space, wanted=WANTED):
 def main():
     design = so.Design(lens, curvature=0.05, conic=-0.8, thickness=3.0)
     other = next_element()
-    design, steps = thickness_of(design, other, space=12.6)
+    newton, steps = thickness_of(design.only("thickness"), other, space=12.6)
     for thickness, gap in steps:
         print(f"thickness {thickness:.9f} mm, gap {gap:.9f} mm")
-    _, found = spaced(design, other, 12.6)
+    _, found = spaced(design.changed(**newton.parameters), other, 12.6)
     for name, rate in found.a.items():
         print(f"gap by {name}: {rate:+.6f}")
 

@@ -13,29 +13,43 @@ PRESSURE_ANGLE = np.radians(20.0)
 FIRST_ROLL = 0.02
 
 
-def involute_gear(teeth, module, pressure_angle=PRESSURE_ANGLE, thinning=0.0):
+def involute_gear(teeth, module, pressure_angle=PRESSURE_ANGLE, thinning=0.0, rounding=0.0):
     """An external spur gear of the standard proportions, a tooth along x.
 
     The addendum is one module, the dedendum 1.25. `thinning` (radians) is taken from each side of
-    each tooth.
+    each tooth; `rounding` is the radius of the corners of its tip.
     """
     pitch = 0.5 * module * teeth
     base = pitch * np.cos(pressure_angle)
     tip, root = pitch + module, pitch - 1.25 * module
     first = max(FIRST_ROLL, np.sqrt(max((root / base) ** 2 - 1.0, 0.0)))
-    last = np.sqrt((tip / base) ** 2 - 1.0)
+    # a curve parallel to an involute is an involute of the same circle: the rounding's centre is on
+    # one, at its own radius inside the tip
+    last = (np.sqrt((tip - rounding) ** 2 - base**2) + rounding) / base
+    beyond = base * last - rounding
+    side = last - np.arctan(beyond / base)  # angle of that centre from the involute's start
     half = 0.5 * np.pi / teeth + np.tan(pressure_angle) - pressure_angle - thinning
     x, y = "r*(cos(t) + t*sin(t))", "r*(sin(t) - t*cos(t))"
     left = FormulaCurve(x, f"-{y}", "0", first, last, {"r": base})
     right = FormulaCurve(x, y, "0", first, last, {"r": base})
-    at_tip, at_foot = half - (last - np.arctan(last)), half - (first - np.arctan(first))
+    at_tip, at_foot = half - side, half - (first - np.arctan(first))
     foot = base * np.hypot(1.0, first)
     curves = []
     for k in range(teeth):
         middle = 2.0 * np.pi * k / teeth
+        corners = [
+            circular(rounding, first, last, polar(tip - rounding, at))
+            for at, first, last in (
+                (middle - at_tip, middle - half + last - 0.5 * np.pi, middle - at_tip),
+                (middle + at_tip, middle + at_tip, middle + half - last + 0.5 * np.pi),
+            )
+            if rounding
+        ]
         curves += [
             right.transformed(turn(middle - half), np.zeros(3)),
+            *corners[:1],
             circular(tip, middle - at_tip, middle + at_tip),
+            *corners[1:],
             left.transformed(turn(middle + half), np.zeros(3)),
         ]
         low, high = middle + at_foot, middle + 2.0 * np.pi / teeth - at_foot
@@ -51,8 +65,8 @@ def polar(r, angle):
     return r * np.array([np.cos(angle), np.sin(angle)])
 
 
-def circular(r, first, last):
-    return ConicArc((0, 0), (r, 0), (0, r), first, last)
+def circular(r, first, last, centre=(0, 0)):
+    return ConicArc(centre, (r, 0), (0, r), first, last)
 
 
 def turn(angle):

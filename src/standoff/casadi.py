@@ -1,4 +1,4 @@
-"""Signed distances in CasADi, with exact Jacobian and Hessian (docs/differentiable.md)."""
+"""Signed distances in CasADi, with exact derivatives (docs/differentiable.md, docs/design.md)."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.body import Body
+from standoff.design import Design
 from standoff.errors import StandoffError, not_installed
-from standoff.frameworks import ambient
+from standoff.frameworks import ambient, designed
 
 try:
     import casadi
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(not_installed("CasADi", "casadi"), name=error.name) from error
 
-__all__ = ["distance"]
+__all__ = ["design_distance", "distance"]
 
 _KEPT: list[Any] = []
 """CasADi does not own its callbacks: one that Python has freed fails when it is called."""
@@ -55,6 +56,50 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
     """
     check_name(name)
     return _Value(ambient.Pair.of(a, b, undefined), name)
+
+
+def design_distance(
+    design_a: Design | Body,
+    design_b: Design | Body,
+    *,
+    undefined: str = "nan",
+    name: str = "design_distance",
+) -> Any:
+    """A CasADi function: the signed minimum distance of two designed bodies by their parameters
+    and poses (docs/design.md).
+
+    Make it once for a pair of designs, as `distance`. It has first derivatives, no second ones:
+    Ipopt takes it with ``hessian_approximation="limited-memory"``.
+
+    Parameters
+    ----------
+    design_a, design_b : Design or Body
+        A body does not change. All parameters are inputs: ``design.only("radius")`` has one.
+    undefined : "nan" or "raise"
+        As in `distance`. In flat and line contact derivatives by parameters are not defined.
+    name : str
+        Of the function, as CasADi takes it.
+
+    Returns
+    -------
+    casadi.Callback
+        Its inputs are named: ``a_radius`` is A's parameter ``radius``, ``b_radius`` B's; ``pose_a``
+        and ``pose_b`` come last. A parameter of one index is a column, one of more than two a
+        column of its numbers in NumPy's order.
+
+    Raises
+    ------
+    TypeError
+        No designs.
+    ValueError
+        An unknown choice, or a name that CasADi does not take. When called, within CasADi's own
+        RuntimeError: parameters that make no body; a matrix that is not a pose; undefined
+        derivatives, if asked; a second derivative.
+    """
+    check_name(name)
+    pair = design_a, design_b
+    params = [x.parameters if isinstance(x, Design) else {} for x in pair]
+    return _DesignValue(designed.Designs.of(*pair, (params[0], params[1]), undefined), name)
 
 
 def check_name(name: str) -> None:
@@ -179,3 +224,52 @@ def _poses(given: Any) -> list[Any]:
 def _by_columns(matrix: Any) -> Any:
     """(16,) the entries in CasADi's order."""
     return matrix.T.reshape(ambient.ENTRIES)
+
+
+class _DesignValue(NamedCallback):
+    """(A's parameters, B's, pose_a, pose_b) to the distance."""
+
+    def __init__(self, designs: designed.Designs, name: str) -> None:
+        sides = zip("ab", designs.names, strict=True)
+        labels = [f"{side}_{key}" for side, names in sides for key in names]
+        for label in labels:
+            check_name(label)
+        sizes = [_size(shape) for shape in designs.shapes]
+        inputs = dict(zip([*labels, "pose_a", "pose_b"], sizes, strict=True))
+        super().__init__(designs, name, inputs, {"distance": casadi.Sparsity.dense(1, 1)})
+
+    def eval(self, given: Any) -> Any:
+        return [float(designed.value(self.pair, *_arrays(given, self.pair.shapes)))]
+
+    def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
+        sizes = [*self.inputs.values(), casadi.Sparsity(1, 1)]
+        told = dict(zip(inputs, sizes, strict=True))
+        return _DesignGradient(self.pair, name, told, self.jacobian_outputs(outputs), options)
+
+
+class _DesignGradient(NamedCallback):
+    """The same and the distance to a row of derivatives by each input."""
+
+    def eval(self, given: Any) -> Any:
+        shapes = self.pair.shapes
+        found = designed.first(self.pair, *_arrays(given[:-1], shapes))
+        return [_row_of(x) for x in found.gradients]
+
+    def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
+        raise StandoffError(designed.NO_SECOND)
+
+
+def _size(shape: tuple[int, ...]) -> Any:
+    if len(shape) == 2:
+        return casadi.Sparsity.dense(*shape)
+    return casadi.Sparsity.dense(int(np.prod(shape)), 1)
+
+
+def _arrays(given: Any, shapes: Any) -> list[Any]:
+    """Of CasADi's matrices, in NumPy's order and shapes."""
+    return [np.asarray(x.full()).reshape(shape) for x, shape in zip(given, shapes, strict=True)]
+
+
+def _row_of(gradient: Any) -> Any:
+    """(1, entries) in CasADi's order."""
+    return (gradient.T if gradient.ndim == 2 else gradient).reshape(1, -1)

@@ -121,7 +121,12 @@ class DeviceError(StandoffError, RuntimeError):
     """A haptic device that is not open, or no longer there."""
 
 
-class MaskedNumbers(StandoffTypeError):
+class UnreadableNumbers(StandoffTypeError):
+    """Numbers that are given in an array, but cannot be read there: they are on a device, such as
+    a GPU, or belong to a framework that does not share them."""
+
+
+class MaskedNumbers(UnreadableNumbers):
     """Some of the numbers given are masked: there is no value to compute with."""
 
 

@@ -73,6 +73,32 @@ def test_many_placements_of_both_bodies(rng):
     np.testing.assert_allclose(found[0], found[1], rtol=0.0, atol=1e-9)
 
 
+def test_frames_of_a_run_are_the_single_answers(rng):
+    """From faces over edges to vertices, past the horizon and back."""
+    a = so.Design(so.shapes.lens, radius=1.0, offset=0.45)
+    b = so.Design(so.shapes.ellipsoid, semi_axes=[0.15, 0.3, 0.2])
+    placed = so.Pose.exp([0.2, -0.3, 0.1], [0.1, 0.0, -0.2])
+    poses = np.tile(np.eye(4), (40, 1, 1))
+    angles = np.linspace(0.0, 3.0, 40)
+    far = 1.2 + 2.0 * (angles > 2.5)
+    poses[:, :3, 3] = (far * [np.cos(angles), np.sin(angles), 0.3 * angles]).T
+    tracker = so.Tracker(a.body, b.body, law=so.PredictorCorrector(within=2.0))
+    _, answers = tracker.run(tracker.start(placed, poses[0]), placed, poses[1:], dt=0.05)
+    np.testing.assert_allclose(answers.poses[1], poses[1:], atol=1e-15)
+    told = so.shape_gradient(answers, a=a, b=b)
+    assert {kind for kind, _ in (x.feature_a for x in answers)} >= {"face", "edge", ""}
+    for k, answer in enumerate(answers):
+        if not answer.feature_a.kind:
+            assert np.isnan(told.a["radius"][k])
+            assert told.smoothness[k] is Smoothness.UNDEFINED
+            continue
+        one = so.shape_gradient(answer, a=a, b=b)
+        assert told.smoothness[k] is one.smoothness
+        assert told.reasons.get(k, "") == one.reason
+        assert abs(told.a["radius"][k] - one.a["radius"]) <= 1e-11
+        np.testing.assert_allclose(told.b["semi_axes"][k], one.b["semi_axes"], atol=1e-11)
+
+
 def test_rows_of_other_bodies_are_refused():
     ball = so.Design(so.shapes.sphere, radius=1.0)
     pose = np.eye(4)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
-from standoff.kernels.compiler.entry import REAL, Entry
+from standoff.kernels.compiler.entry import REAL, ROWS, Entry, WrongKind
 
 
 def doubled(x: float) -> float:
@@ -43,3 +44,17 @@ def test_garbage_is_collected_as_before_once_an_entry_is_compiled(
         entry.prepare()
     assert seen == [False]
     assert gc.isenabled() == collecting
+
+
+@pytest.mark.parametrize("terse", [True, False])
+def test_the_first_call_of_a_terse_entry_says_wrong_kind_as_later_ones_do(
+    monkeypatch: pytest.MonkeyPatch, terse: bool
+) -> None:
+    """The first query of a program may be of a matrix that is read-only, such as JAX's."""
+    entry = Entry(doubled, {"nopython": True}, (ROWS,), "query", terse)
+    monkeypatch.setattr(entry, "prepare", lambda: None)
+    matrix = np.eye(4)
+    matrix.flags.writeable = False
+    with pytest.raises(TypeError) as caught:
+        entry(matrix)
+    assert isinstance(caught.value, WrongKind) == terse

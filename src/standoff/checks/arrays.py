@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.checks.numbers import GREATEST
-from standoff.checks.real_numbers import check_unmasked, real_array, shown
-from standoff.errors import MaskedNumbers, StandoffError
+from standoff.checks.real_numbers import check_readable, real_array, shown
+from standoff.errors import StandoffError, UnreadableNumbers
 
 FloatArray = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
     any size."""
     try:
         copied = real_array(value)
-    except MaskedNumbers as error:
+    except UnreadableNumbers as error:
         raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError) as error:
         raise StandoffError(
@@ -88,8 +88,8 @@ def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
 def unmasked(value: object, name: str) -> None:
     """Refuse masked numbers, before one of NumPy's conversions reads what lies beneath as data."""
     try:
-        check_unmasked(value)
-    except MaskedNumbers as error:
+        check_readable(value)
+    except UnreadableNumbers as error:
         raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
 
 

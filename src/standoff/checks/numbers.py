@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from standoff.checks.real_numbers import NOT_REAL, check_unmasked, shown
-from standoff.errors import MaskedNumbers, StandoffError
+from standoff.checks.real_numbers import NOT_REAL, check_readable, shown
+from standoff.errors import StandoffError, UnreadableNumbers
 
 GREATEST = 1e50
 """Greatest size of a number that is read, in whatever unit: sixth powers of lengths (a squared
@@ -102,12 +102,12 @@ def _real(value: Any, name: str) -> float:
     if type(value) is float:
         return value
     try:
-        check_unmasked(value)
+        check_readable(value)
         array = isinstance(value, np.ndarray) and (value.ndim or value.dtype.kind not in "iufO")
         if array or isinstance(value, NOT_REAL):
             raise TypeError("no number")
         return float(value)
-    except MaskedNumbers as error:
+    except UnreadableNumbers as error:
         raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError, OverflowError) as error:
         raise StandoffError(f"{name} = {shown(value)} is not a number.", name, value) from error

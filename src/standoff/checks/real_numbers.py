@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError, UnreadableNumbers
 
 SHOWN_CHARACTERS = 200
 """Longest piece of an offending value that a message repeats, in characters."""
@@ -38,13 +38,19 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     return text if len(text) <= characters else text[: characters - 1] + "…"
 
 
-def check_unmasked(value: Any) -> None:
+HOST = {1: "CPU", 3: "CUDA, pinned", 11: "ROCm, pinned", 13: "CUDA, managed"}
+"""Devices whose memory the CPU reads, by DLPack's numbers."""
+DEVICES = {2: "CUDA", 4: "OpenCL", 7: "Vulkan", 8: "Metal", 10: "ROCm", 14: "oneAPI"}
+"""Others, as messages name them."""
+
+
+def check_readable(value: Any) -> None:
     """Refuse masked numbers, in an array or in lists of arrays: NumPy's own conversions drop the
-    mask and read what lies beneath as data.
+    mask and read what lies beneath as data. Refuse numbers on a device.
 
     Raises
     ------
-    MaskedNumbers
+    UnreadableNumbers
     """
     waiting, seen = [value], set[int]()
     while waiting:
@@ -55,12 +61,32 @@ def check_unmasked(value: Any) -> None:
             given = given.ravel().tolist()
         if isinstance(given, list | tuple) and id(given) not in seen:
             seen.add(id(given))  # a list may hold itself
-            waiting += [item for item in given if isinstance(item, list | tuple | np.ndarray)]
+            kinds = {kind for kind in set(map(type, given)) if _holds_numbers(kind)}
+            waiting += [item for item in given if type(item) in kinds] if kinds else []
+        elif not isinstance(given, list | tuple | np.ndarray) and _holds_numbers(type(given)):
+            _check_device(given)
+
+
+def _holds_numbers(kind: type) -> bool:
+    """Is it a list, or an array of NumPy or of a framework that shares its memory by DLPack?"""
+    return issubclass(kind, list | tuple) or hasattr(kind, "__dlpack_device__")
+
+
+def _check_device(value: Any) -> None:
+    try:
+        kind, number = value.__dlpack_device__()
+    except (RuntimeError, ValueError, BufferError):  # on several, or on none: its reading tells
+        return
+    if int(kind) not in HOST:
+        raise UnreadableNumbers(
+            f"is on a device ({DEVICES.get(int(kind), f'kind {int(kind)}')}, number {number}): "
+            "copy it to the CPU, by tensor.cpu(), cupy.asnumpy(array) or jax.device_get(array)"
+        )
 
 
 def shape_of(value: Any) -> tuple[int, ...] | None:
     """Return the shape of what may be an array; None where its rows differ in length."""
-    if isinstance(value, np.ndarray):
+    if hasattr(value, "__dlpack_device__") and hasattr(value, "shape"):
         return tuple(value.shape)
     try:
         # As objects, so that no element is read as a number, which a masked one would warn of.
@@ -82,14 +108,14 @@ def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
 
     Raises
     ------
-    MaskedNumbers
-        Some of them are masked.
+    UnreadableNumbers
+        Some of them are masked, or on a device.
     TypeError
         Something in it is not a real number.
     ValueError
         Its rows differ in length, or it is nested too deeply.
     """
-    check_unmasked(value)
+    check_readable(value)
     given = as_given(value)
     if given.dtype.kind not in "iufO":
         raise StandoffTypeError(f"numbers of the kind {given.dtype}")
@@ -108,17 +134,26 @@ def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
 
 def as_given(value: Any) -> NDArray[Any]:
     """An array of what is given, with the elements of lists as they are, before NumPy gives them
-    one type.
+    one type. An array of another library is read where it is, without a copy.
 
     Raises
     ------
+    UnreadableNumbers
+        The other library does not share it.
     ValueError
         Its rows differ in length.
     """
     if isinstance(value, np.ndarray):
         return value
-    if hasattr(value, "__array__") and not isinstance(value, np.generic):
-        return np.asarray(value)  # of JAX, PyTorch or pandas, which know their own kind of number
+    if not isinstance(value, np.generic):
+        try:
+            if hasattr(value, "__array__"):
+                # of JAX, PyTorch or pandas, which know their own kind of number
+                return np.asarray(value)
+            if hasattr(value, "__dlpack__"):
+                return np.from_dlpack(value)
+        except (RuntimeError, BufferError) as error:  # of PyTorch: it requires a gradient
+            raise UnreadableNumbers(f"cannot be read: {error}") from error
     given = np.array(value, dtype=object)
     if any(issubclass(kind, list | tuple) for kind in _kinds(given)):
         raise StandoffError("rows of different lengths")

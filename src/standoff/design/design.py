@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature, charts_of
 from standoff.checks.arrays import finite
+from standoff.checks.names import choice
 from standoff.checks.real_numbers import shown
 from standoff.design.alignment import Ints, numbers_in
 from standoff.design.points import Group, group_of, points_of
@@ -97,6 +98,20 @@ class Design:
                 f"{', '.join(self.parameters)}."
             )
         return Design(self.make, **(self.parameters | parameters))
+
+    def only(self, *names: str) -> Design:
+        """The same design, of which only some parameters are still parameters: the others keep
+        their values, and no time is spent on their derivatives.
+
+        Raises
+        ------
+        ValueError
+            No name, or one that is none of the parameters.
+        """
+        for name in names:
+            choice(name, "names", self.parameters)
+        held = {key: value for key, value in self.parameters.items() if key not in names}
+        return Design(partial(self.make, **held), **{key: self.parameters[key] for key in names})
 
     def rates(
         self, feature: Feature, parameters: tuple[float, ...], normal: Array

@@ -21,6 +21,7 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.state import arrays as K
 from standoff.solids.answer import SolidProximity
 from standoff.solids.planar.solid import PlanarSolid
+from standoff.tracking.answers import Answers
 from standoff.tracking.contact.witness_set import poses_of
 from standoff.tracking.derivatives import (
     NOT_UNIQUE,
@@ -83,7 +84,7 @@ def shape_gradient(
 
 @overload
 def shape_gradient(
-    answer: Distances, *, a: Design | None = None, b: Design | None = None
+    answer: Distances | Answers, *, a: Design | None = None, b: Design | None = None
 ) -> ShapeGradientArrays: ...
 
 
@@ -94,15 +95,15 @@ def shape_gradient(
 
     Parameters
     ----------
-    answer : Proximity, SolidProximity or Distances
-        Of ``a.body``, ``b.body``, or both.
+    answer : Proximity, SolidProximity, Distances or Answers
+        Of ``a.body``, ``b.body``, or both; `Answers` are those of ``Tracker.run``.
     a, b : Design, optional
         How A and B are made; without one a body does not change. One design may be both.
 
     Returns
     -------
     ShapeGradient
-        Of `Distances` a `ShapeGradientArrays`.
+        Of `Distances` and `Answers` a `ShapeGradientArrays`.
 
     Raises
     ------
@@ -117,9 +118,10 @@ def shape_gradient(
     Rates are central differences of fourth order of the boundary's point at the witness place, in
     bodies that the design makes for neighbouring parameters, once for all answers.
     """
-    if not isinstance(answer, Proximity | SolidProximity | Distances):
+    if not isinstance(answer, Proximity | SolidProximity | Tables):
         raise StandoffTypeError(
-            f"answer is {shown(answer)}: give the answer of two bodies or solids, or `Distances`.",
+            f"answer is {shown(answer)}: give the answer of two bodies or solids, `Distances`, or "
+            "the `Answers` of a run.",
             "answer",
             answer,
         )
@@ -129,10 +131,11 @@ def shape_gradient(
     if a is None and b is None:
         raise StandoffError("No design is given: give a=, b= or both.")
     _check_bodies(answer, (a, b))
-    return _of_many(answer, (a, b)) if isinstance(answer, Distances) else _of_one(answer, (a, b))
+    return _of_many(answer, (a, b)) if isinstance(answer, Tables) else _of_one(answer, (a, b))
 
 
 Designs = tuple[Design | None, Design | None]
+Tables = Distances | Answers
 SIGNS = {"a": 1.0, "b": -1.0}
 """Of the normal, which points from A to B, where it points out of a body."""
 
@@ -171,17 +174,18 @@ def _group(answer: Any, side: str, design: Design, witness: tuple[Array, Array])
     return group
 
 
-def _of_many(answers: Distances, designs: Designs) -> ShapeGradientArrays:
+def _of_many(answers: Distances | Answers, designs: Designs) -> ShapeGradientArrays:
+    poses, rows = answers.poses, answers.rows
     smoothness, reasons, _ = flagged_gradients(answers)
     undefined = (smoothness == Smoothness.UNDEFINED)[:, None]
     found: list[dict[str, Array]] = []
     for k, (design, body) in enumerate(zip(designs, answers.bodies, strict=True)):
         rates: dict[str, Array] = {}
         if design is not None:
-            rotations = answers.poses[k][:, :3, :3]
+            rotations = poses[k][:, :3, :3]
             outward = SIGNS["ab"[k]] * np.matmul(answers.normal[:, None, :], rotations)[:, 0]
-            modes = np.where(undefined, np.nan, answers.rows[:, K.OUT_MODE + 2 * k :][:, :2])
-            groups = groups_of(body, modes, answers.rows[:, K.OUT_Q + 2 * k :][:, :2])
+            modes = np.where(undefined, np.nan, rows[:, K.OUT_MODE + 2 * k :][:, :2])
+            groups = groups_of(body, modes, rows[:, K.OUT_Q + 2 * k :][:, :2])
             rates = {name: -rate for name, rate in design.rates_of(groups, outward).items()}
         found.append(rates)
     return ShapeGradientArrays(found[0], found[1], smoothness, reasons)
@@ -192,7 +196,7 @@ def _single(rate: Any) -> float | Array:
 
 
 def _check_bodies(answer: Any, designs: Designs) -> None:
-    single = not isinstance(answer, Distances)
+    single = not isinstance(answer, Tables)
     if single and not answer.feature_a.kind:
         raise StandoffError(
             "The answer has no witness points (the bodies are beyond the horizon, or one is a "

@@ -15,6 +15,7 @@ from (I + E) ((I + E)ᵀ (I + E))^(-1/2), expanded: so the twists of `Derivative
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +27,8 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import DerivativeWarning, StandoffError, StandoffTypeError
 from standoff.tracking.cold_query import distance
 from standoff.tracking.derivatives import Smoothness
-from standoff.tracking.many_distances import answered_rows
+from standoff.tracking.many_distances import Distances, answered_rows
+from standoff.tracking.proximity import Proximity
 
 Array = NDArray[np.float64]
 
@@ -92,6 +94,10 @@ class Rows(NamedTuple):
     hessian: Array
     turns: tuple[Array, Array]
     """Rotations of A and of B, (n, 3, 3) or (1, 3, 3)."""
+    answers: Proximity | Distances
+    """A single one, or those of all rows."""
+    lacking: Mapping[int, tuple[Smoothness, str]]
+    """Of rows that lack derivatives, their flag and the reason."""
 
 
 def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
@@ -109,8 +115,7 @@ def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
 def first(pair: Pair, poses_a: Array, poses_b: Array) -> First:
     """Distances and gradients; where they are not defined, as the pair says."""
     rows, lead = _rows(pair, poses_a, poses_b, 1)
-    by_entries = _by_entries(rows.gradient, _twists(rows))
-    return First(rows.distance.reshape(lead), by_entries.reshape(*lead, 2, 4, 4))
+    return First(rows.distance.reshape(lead), by_matrices(rows).reshape(*lead, 2, 4, 4))
 
 
 def second(pair: Pair, poses_a: Array, poses_b: Array) -> Second:
@@ -151,44 +156,59 @@ def lead_of(shape_a: tuple[int, ...], shape_b: tuple[int, ...]) -> tuple[int, ..
 
 def _rows(pair: Pair, poses_a: Array, poses_b: Array, order: int) -> tuple[Rows, tuple[int, ...]]:
     lead = lead_of(poses_a.shape, poses_b.shape)
-    # One pose for all stays one; so.distances takes that as it is.
-    given = [
-        np.ascontiguousarray(np.broadcast_to(x, (*lead, 4, 4)) if x.size > ENTRIES else x)
-        for x in (poses_a, poses_b)
-    ]
-    flat = [x.reshape(-1, 4, 4) for x in given]
-    return (_one if len(flat[0]) == len(flat[1]) == 1 else _many)(pair, flat, order), lead
+    found = answered(pair, flat_poses((poses_a, poses_b), lead), order)
+    tell(pair.undefined, found.lacking, len(found.distance), 4)
+    return found, lead
 
 
-def _one(pair: Pair, poses: list[Array], order: int) -> Rows:
+def flat_poses(poses: Sequence[Array], lead: tuple[int, ...]) -> list[Array]:
+    """(n, 4, 4) poses of all rows; one pose for all stays one, which `answered` takes as it is."""
+    given = [np.broadcast_to(x, (*lead, 4, 4)) if x.size > ENTRIES else x for x in poses]
+    return [np.ascontiguousarray(x).reshape(-1, 4, 4) for x in given]
+
+
+def answered(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
+    """Answers at poses (n, 4, 4), or (1, 4, 4) for all, with their derivatives by twists.
+
+    Raises
+    ------
+    StandoffError
+        If a matrix is not a pose; the first such row is named.
+    """
+    return (_one if len(poses[0]) == len(poses[1]) == 1 else _many)(pair, poses, order)
+
+
+def _one(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
     """By the single query, which takes a fraction of the time of an array of one row."""
     answer = distance(pair.a, pair.b, poses[0][0], poses[1][0])
     number = np.array([answer.distance])
     if not order:
-        return Rows(number, NONE, NONE, (NONE, NONE))
+        return Rows(number, NONE, NONE, (NONE, NONE), answer, {})
     derived = answer.derivatives()
-    if derived.smoothness in LACKING:
-        _tell(pair, derived.smoothness, "", derived.reason, "")
+    flag, reason = derived.smoothness, derived.reason
     at = answer.poses
     assert at is not None  # a cold answer keeps them
     turns = (at[0][:9].reshape(1, 3, 3), at[1][:9].reshape(1, 3, 3))
-    return Rows(number, derived.gradient[None], derived.hessian[None], turns)
+    lacking = {0: (flag, reason)} if flag in LACKING else {}
+    return Rows(number, derived.gradient[None], derived.hessian[None], turns, answer, lacking)
 
 
-def _many(pair: Pair, poses: list[Array], order: int) -> Rows:
+def _many(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
     found = answered_rows(pair.a, pair.b, *poses)
     if found.errors:
         raise found.errors[min(found.errors)]
     if not order:
-        return Rows(found.distance, NONE, NONE, (NONE, NONE))
+        return Rows(found.distance, NONE, NONE, (NONE, NONE), found, {})
     turns = (found.poses[0][:, :3, :3], found.poses[1][:, :3, :3])
     derived = found.derivatives()
-    missing = np.flatnonzero([flag in LACKING for flag in derived.smoothness])
-    if len(missing):
-        row = int(missing[0])
-        told = f" ({len(missing)} of {len(found)} rows.)"
-        _tell(pair, derived.smoothness[row], f" of row {row}", derived.reasons[row], told)
-    return Rows(found.distance, derived.gradient, derived.hessian, turns)
+    missing = np.flatnonzero([flag in LACKING for flag in derived.smoothness]).tolist()
+    lacking = {row: (derived.smoothness[row], derived.reasons[row]) for row in missing}
+    return Rows(found.distance, derived.gradient, derived.hessian, turns, found, lacking)
+
+
+def by_matrices(rows: Rows) -> Array:
+    """(n, 32) derivatives by the entries of both matrices."""
+    return _by_entries(rows.gradient, _twists(rows))
 
 
 def _twists(rows: Rows) -> Array:
@@ -227,16 +247,25 @@ def _across(turns: Array, by_turn: Array) -> Array:
     return found.reshape(-1, 16, 3)
 
 
-def _tell(pair: Pair, flag: Smoothness, which: str, reason: str, more: str) -> None:
-    """Warn of an answer that lacks derivatives, or raise."""
+def tell(
+    undefined: str, lacking: Mapping[int, tuple[Smoothness, str]], count: int, stacklevel: int
+) -> None:
+    """Warn of answers that lack derivatives, or raise; the first of `count` rows is named."""
+    if not lacking:
+        return
+    row = min(lacking)
+    flag, reason = lacking[row]
+    which, more = (
+        ("", "") if count == 1 else (f" of row {row}", f" ({len(lacking)} of {count} rows.)")
+    )
     some = flag is Smoothness.PARTIAL
     lacks = "does not have all" if some else "has no"
     told = f"The distance{which} {lacks} derivatives: {reason}{more}"
-    if pair.undefined == "raise":
+    if undefined == "raise":
         raise StandoffError(told)
     warnings.warn(
         f"{told} {'The others' if some else 'They'} are nan; undefined='raise' makes this an "
         "error.",
         DerivativeWarning,
-        stacklevel=5,
+        stacklevel=stacklevel,
     )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.state import arrays as K
+from standoff.motion.poses import matrices_of
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.proximity import Event, Proximity
@@ -71,7 +72,7 @@ class AnswerArrays(KeepsReadOnly):
     normal = _field("normal", "(n, 3) unit vectors from A to B.")
 
 
-@hides("blocks")
+@hides("blocks", "rows")
 class Answers(AnswerArrays):
     """Answers of n frames of two bodies, in arrays of n rows; ``answers[k]`` is one `Proximity`.
 
@@ -109,6 +110,24 @@ class Answers(AnswerArrays):
     velocity_a = _field("velocity_a", "(n, 3) velocities of the witness points on A.")
     velocity_b = _field("velocity_b", "(n, 3) velocities of those on B.")
     residual = _field("residual", "(n,) lengths of the projection errors.")
+
+    @property
+    def bodies(self) -> tuple[Body, Body]:
+        """(A, B)."""
+        return self._a, self._b
+
+    @property
+    def rows(self) -> Array:
+        """The kernels' answers, as `Distances` has them."""
+        return np.ascontiguousarray(self.blocks[:, : K.N_OUT])
+
+    @property
+    def poses(self) -> tuple[Array, Array]:
+        """World poses of A and B in each frame, two (n, 4, 4)."""
+        motions = self.blocks[:, K.BLOCK_MOTION :]
+        flat = (motions[:, at : at + 12] for at in (K.POSE_A, K.POSE_B))
+        a, b = (matrices_of(x[:, :9].reshape(-1, 3, 3), x[:, 9:]) for x in flat)
+        return a, b
 
     @property
     def time(self) -> Array:

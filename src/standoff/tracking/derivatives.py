@@ -141,7 +141,8 @@ def flagged_gradient(answer: Answer) -> tuple[Smoothness, str, Array]:
 class Table(Protocol):
     """A table of answers that can also give a row as an `Answer`."""
 
-    rows: Array
+    @property
+    def rows(self) -> Array: ...
 
     @property
     def bodies(self) -> tuple[Body, Body]: ...

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.checks.names import choice
 from standoff.checks.numbers import positive
 from standoff.checks.real_numbers import DEEPEST, real_array, shown
-from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError
+from standoff.errors import StandoffError, StandoffTypeError, UnreadableNumbers
 from standoff.kernels.paper import integrators as I
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
@@ -193,7 +193,7 @@ class GainMatrix(KeepsReadOnly):
     def __init__(self, gains: ArrayLike) -> None:
         try:
             matrix = real_array(gains)
-        except MaskedNumbers as error:
+        except UnreadableNumbers as error:
             raise StandoffError(f"gains {error}: {shown(gains)}", "gains", gains) from error
         except TypeError as error:
             raise StandoffError(f"gains = {shown(gains)}: {error}", "gains", gains) from error

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, charts_of
-from standoff.checks.real_numbers import check_unmasked, real_array, shown
-from standoff.errors import MaskedNumbers, StandoffError
+from standoff.checks.real_numbers import check_readable, real_array, shown
+from standoff.errors import StandoffError, UnreadableNumbers
 from standoff.kernels.entries.queries import on_face
 from standoff.tracking.rows import StateRow
 
@@ -66,7 +66,7 @@ def _feature_of(body: Body, feature: Any) -> tuple[str, int]:
     """Kind and number of a feature that the body has."""
     try:
         kind, index = feature
-        check_unmasked(index)
+        check_readable(index)
         index = operator.index(index)
     except (TypeError, ValueError) as error:
         raise StandoffError(
@@ -88,7 +88,7 @@ def _values_of(body: Body, kind: str, index: int, parameters: Any) -> Array:
     """Parameters of a feature, as many as it takes."""
     try:
         values = real_array(parameters).ravel()
-    except MaskedNumbers as error:
+    except UnreadableNumbers as error:
         raise StandoffError(
             f"The parameter list {error}: {shown(parameters)}", "parameters", parameters
         ) from error

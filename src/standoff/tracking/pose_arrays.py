@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import real_array, shape_of, shown
-from standoff.errors import MaskedNumbers, StandoffError
+from standoff.errors import StandoffError, UnreadableNumbers
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, Poses
 from standoff.motion.pose import matrix_of
@@ -65,7 +65,7 @@ def numbers(value: Any, name: str, forms: str) -> Array:
     """
     try:
         return real_array(value, copy=False)
-    except MaskedNumbers as error:
+    except UnreadableNumbers as error:
         raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
     except (TypeError, ValueError) as error:
         raise StandoffError(

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
-from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError
+from standoff.checks.real_numbers import real_array, shown
+from standoff.errors import StandoffError, StandoffTypeError, UnreadableNumbers
 from standoff.kernels.tolerances import FARTHEST, ROTATION
 from standoff.motion import Pose, Twist
 from standoff.motion.rotations import defect, without_rounding
 from standoff.tracking.inputs import flat_twist, matrix_and_mark, out_of_plane
-from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
+from standoff.tracking.pose_arrays import flat_poses, mended, numbers, read_poses
 from standoff.world.tolerances import COMPOSED_ROUNDOFF
 
 Array = NDArray[np.float64]
@@ -170,7 +170,9 @@ def read_twists_of(
             found[row, :6] = flat_twist(twist, Pose.of(poses[row]))
     else:
         try:
-            array = np.asarray(twists, dtype=np.float64)
+            array = real_array(twists, copy=False)
+        except UnreadableNumbers as error:
+            raise StandoffError(f"twists {error}: {shown(twists)}", "twists", twists) from error
         except (TypeError, ValueError) as error:
             raise StandoffTypeError(
                 f"twists = {shown(twists)}: give (n, 6), or a mapping of names.", "twists", twists
@@ -194,6 +196,19 @@ def read_twists_of(
             found[rows[k], :6],
         )
     return found, True
+
+
+def frames_of(given: Any, name: str) -> Any:
+    """Frames in an array of another library, read where it is; anything else as it is given.
+
+    Raises
+    ------
+    StandoffError
+        An array that is on a device, or not of numbers.
+    """
+    if isinstance(given, np.ndarray) or not hasattr(given, "__dlpack_device__"):
+        return given
+    return numbers(given, name, "an array of n frames")
 
 
 def check_frames(poses: Any, twists: Any) -> None:

@@ -33,7 +33,7 @@ from standoff.world.given import (
 )
 from standoff.world.impact import WorldImpact, first_impact, pairs_that_count
 from standoff.world.making import made_model
-from standoff.world.poses import GivenPoses, check_frames, read_poses_of, read_twists_of
+from standoff.world.poses import GivenPoses, check_frames, frames_of, read_poses_of, read_twists_of
 from standoff.world.rules import Given
 from standoff.world.state import WorldState, check_key
 
@@ -308,6 +308,7 @@ class World(KeepsReadOnly):
         TypeError, ValueError
             As ``step``, with the number of the frame; twists of another number of frames.
         """
+        poses, twists = frames_of(poses, "poses"), frames_of(twists, "twists")
         check_frames(poses, twists)
         answers = []
         each = itertools.repeat(None) if twists is None else twists

@@ -99,6 +99,8 @@ class Entry(CPUDispatcher):  # type: ignore[misc]
         for name, given, wanted in zip(names, args, self.signature, strict=True):
             kind = typeof(given, Purpose.argument)
             if self.typingctx.can_convert(kind, wanted) is None:
+                if self.terse:
+                    raise WrongKind
                 raise TypeError(
                     f"{self.py_func.__name__}: {name} is {kind}, not {wanted}; the kernels are "
                     "compiled for one kind of arguments, before the loop begins."
