@@ -196,7 +196,13 @@ def test_a_turn_before_leads_the_normal_off_the_axis_of_the_next(
     """In the middle the normal is along the second turn's axis, about which it would not turn."""
     job = make(SPATIAL)
     box = Proof(job, 0.0).box
-    mover, cells = box.movers[0], some_cells(rng, 500, len(job.parameters))
+    mover, columns = box.movers[0], len(job.parameters)
+    # the first turn goes a little, the second far, and the third hardly at all
+    depth = np.tile([0, 3, 0, 0, 30, 0], (500, 1))
+    place = rng.integers(0, 1 << depth)
+    cells = Cells(place, depth, np.zeros((500, 0)))
+    assert [p.name for p in job.parameters][1:5] == ["a", "b", "c", "d"]
+    assert columns == 6
     at, half = box.numbers(cells) * box.unit, box.half(cells)
     order = [k for k, p in enumerate(job.parameters) if p.moves == "tool" and p.what != "x"]
     home, first = job.homes[0].rotation, Rotation.from_rotvec(at[:, order[:1]] * [[0.0, 0.0, 1.0]])
