@@ -16,6 +16,7 @@ from typing import Any
 
 from standoff.errors import StandoffError, not_installed
 from standoff.kernels.compiler import modules
+from standoff.kernels.compiler.entry import uncollected
 
 WRITTEN_FOR = "0.30."
 
@@ -70,7 +71,7 @@ def _as_if_on(target: Target) -> Iterator[None]:
 
 def ptx_of(function: Callable[..., None], signature: tuple[Any, ...], target: Target) -> str:
     """The PTX of what a thread does; it needs no GPU."""
-    with _as_if_on(target):
+    with _as_if_on(target), uncollected():
         ptx, _ = cuda.compile_ptx(function, signature, cc=target, device=False)
     return str(ptx)
 

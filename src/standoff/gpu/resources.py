@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 from collections import Counter
+from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -79,22 +80,36 @@ def resources_of(kernel: str, target: Target = (9, 0)) -> Resources:
     ValueError
         No such kernel, or a target that the compiler does not know.
     """
+    ptx, seconds = compiled(kernel, target)
+    begun = time.perf_counter()
+    told = assembled(ptx, target)
+    counts = Counter(DOUBLE.findall(ptx))
+    return Resources(
+        kernel,
+        target,
+        seconds + time.perf_counter() - begun,
+        **{name: _most(said, told) for name, said in FACTS.items()},
+        doubles=dict(sorted(counts.items())),
+        calls=len(FUNCTION.findall(ptx)),
+    )
+
+
+@lru_cache(maxsize=64)
+def compiled(kernel: str, target: Target) -> tuple[str, float]:
+    """(the PTX of a kernel, seconds that it took).
+
+    Raises
+    ------
+    ValueError
+        No such kernel, or a target that the compiler does not know.
+    """
     if kernel not in KERNELS:
         raise StandoffError(
             f"kernel = {kernel!r}: give one of {', '.join(KERNELS)}.", "kernel", kernel
         )
     begun = time.perf_counter()
     ptx = ptx_of(*KERNELS[kernel], target)
-    told = assembled(ptx, target)
-    counts = Counter(DOUBLE.findall(ptx))
-    return Resources(
-        kernel,
-        target,
-        time.perf_counter() - begun,
-        **{name: _most(said, told) for name, said in FACTS.items()},
-        doubles=dict(sorted(counts.items())),
-        calls=len(FUNCTION.findall(ptx)),
-    )
+    return ptx, time.perf_counter() - begun
 
 
 def _most(said: str, told: str) -> int:
