@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from standoff.bodies.body import Body
 from standoff.checks.numbers import positive
 from standoff.errors import StandoffError
 from standoff.gpu.compiler import check_there
@@ -70,16 +69,19 @@ class Tracks:
             tracker.check_state(state)
         check_there()
         self.tracker, self.by_threads = tracker, 0
-        blocks = np.zeros((len(states), K.N_BLOCK))
-        for block, state in zip(blocks, states, strict=True):
-            block[: K.BLOCK_MOTION] = state.proximity._out[: K.BLOCK_MOTION]
-        self._blocks = sent(blocks)
+        self._blocks = sent(blocks_of(states))
         self._done = empty((len(states),), np.int64)
         self._pair, self._options = pair_and_options(tracker.reached.table.arrays)
 
     @property
     def blocks(self) -> Array:
         found: Array = self._blocks.copy_to_host()
+        return found
+
+    @property
+    def done(self) -> NDArray[np.int64]:
+        """(n,) 1 where a thread has made the row's last frame, else 0."""
+        found: NDArray[np.int64] = self._done.copy_to_host()
         return found
 
     def step(
@@ -114,13 +116,7 @@ class Tracks:
         """
         h = self.tracker.dt if dt is None else positive(dt, "dt")
         n = self._blocks.shape[0]
-        given = np.zeros((n, N_GIVEN))
-        given[:, K.POSE_A : K.POSE_B] = _sound_poses(poses_a, "poses_a", n)
-        given[:, K.POSE_B : K.TWIST_A] = _sound_poses(poses_b, "poses_b", n)
-        given[:, K.TWIST_A : K.TWIST_B] = _sound_twists(twists_a, "twists_a", n)
-        given[:, K.TWIST_B : K.N_MOTION] = _sound_twists(twists_b, "twists_b", n)
-        given[:, K.N_MOTION] = h
-        given[:, K.N_MOTION + 1] = twists_a is not None or twists_b is not None
+        given = given_rows(n, (poses_a, poses_b), h, (twists_a, twists_b))
         self.start_step(sent(given))
         return self._finished()
 
@@ -135,13 +131,44 @@ class Tracks:
     def _finished(self) -> Array:
         """Make the other frames here, and return the answers."""
         blocks = self.blocks
-        left = np.flatnonzero(self._done.copy_to_host() == 0)
+        left = np.flatnonzero(self.done == 0)
         self.by_threads = len(blocks) - len(left)
         for k in left:
             blocks[k] = stepped_here(self.tracker, blocks[k])
         if len(left):
             self._blocks.copy_to_device(blocks)
         return blocks[:, : K.N_OUT]
+
+
+def blocks_of(states: Sequence[TrackerState]) -> Array:
+    """(n, N_BLOCK) what the threads begin with: the last answer and the state after it."""
+    blocks = np.zeros((len(states), K.N_BLOCK))
+    for block, state in zip(blocks, states, strict=True):
+        block[: K.BLOCK_MOTION] = state.proximity._out[: K.BLOCK_MOTION]
+    return blocks
+
+
+def given_rows(
+    n: int,
+    poses: tuple[PosesLike, PosesLike],
+    h: float,
+    twists: tuple[ArrayLike | None, ArrayLike | None] = (None, None),
+) -> Array:
+    """(n, N_GIVEN) what a frame is given: both motions, h [s], 1 where there are twists.
+
+    Raises
+    ------
+    ValueError
+        Poses or twists of another number, or that are invalid.
+    """
+    given = np.zeros((n, N_GIVEN))
+    given[:, K.POSE_A : K.POSE_B] = _sound_poses(poses[0], "poses_a", n)
+    given[:, K.POSE_B : K.TWIST_A] = _sound_poses(poses[1], "poses_b", n)
+    given[:, K.TWIST_A : K.TWIST_B] = _sound_twists(twists[0], "twists_a", n)
+    given[:, K.TWIST_B : K.N_MOTION] = _sound_twists(twists[1], "twists_b", n)
+    given[:, K.N_MOTION] = h
+    given[:, K.N_MOTION + 1] = twists[0] is not None or twists[1] is not None
+    return given
 
 
 def stepped_here(tracker: Tracker, block: Array) -> Array:
@@ -170,7 +197,7 @@ def kernel_of(tracker: Tracker) -> str:
             "law",
             law,
         )
-    kinds = _kind(tracker.a), _kind(tracker.b)
+    kinds = main_kind(tracker.a), main_kind(tracker.b)
     if kinds[0] != kinds[1] or kinds[0] not in KERNEL_OF:
         raise StandoffError(
             "tracker: on a GPU there are frames of two bodies of patches of spheres, or of NURBS "
@@ -179,10 +206,6 @@ def kernel_of(tracker: Tracker) -> str:
             tracker,
         )
     return KERNEL_OF[kinds[0]]
-
-
-def _kind(body: Body) -> Kind | None:
-    return main_kind(body)
 
 
 def _sound_poses(poses: PosesLike, name: str, n: int) -> Array:
