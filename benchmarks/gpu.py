@@ -20,7 +20,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from standoff_studies.kinds import nurbs_ellipsoid
 
 import standoff as so
 from benchmarks.lanes import drawn
@@ -29,6 +28,7 @@ from standoff.gpu import cold, compiler, device_arrays, threads, tracks
 from standoff.gpu.resources import Resources, compiled, resources_of
 from standoff.kernels.state import arrays as K
 from standoff.tracking.reached import cold_table
+from standoff_studies.kinds import nurbs_ellipsoid
 
 Array = NDArray[np.float64]
 AXES = (0.5, 0.8, 0.9), (0.15, 0.3, 0.2)
@@ -110,9 +110,7 @@ class Frames:
         self.poses[:, 0, 3] += SPEED * DT
         turn = np.array([[np.cos(DT), 0, np.sin(DT)], [0, 1, 0], [-np.sin(DT), 0, np.cos(DT)]])
         self.poses[:, :3, :3] = turn @ self.poses[:, :3, :3]
-        return tracks.given_rows(
-            len(self.poses), (np.eye(4), self.poses), DT, (None, self.twist)
-        )
+        return tracks.given_rows(len(self.poses), (np.eye(4), self.poses), DT, (None, self.twist))
 
     def arguments(self) -> tuple[Any, ...]:
         """What a thread is given, after B has moved."""
@@ -249,13 +247,17 @@ def measured_frames(kernel: str, n: int) -> dict[str, float]:
     return {"rate": rate, "share": on_gpu.done.mean(), **found}
 
 
-MUJOCO = """<mujoco><worldbody>
+MUJOCO = """<mujoco><option ccd_iterations="{}"/><worldbody>
 <body><freejoint/><geom type="ellipsoid" size="{}" margin="9"/></body>
 <body><freejoint/><geom type="ellipsoid" size="{}" margin="9"/></body>
 </worldbody></mujoco>"""
 
 
-def measured_mujoco(n: int, device: str = "cuda") -> dict[str, float]:
+ITERATIONS = (35, 500)
+"""Of MuJoCo's GJK: as it comes, and until it no longer matters."""
+
+
+def measured_mujoco(n: int, iterations: int, device: str = "cuda") -> dict[str, float]:
     """`mujoco_warp`'s distances of the ellipsoids of `Cold`, and their error over the size."""
     import mujoco
     import mujoco_warp
@@ -264,7 +266,7 @@ def measured_mujoco(n: int, device: str = "cuda") -> dict[str, float]:
 
     rows = Cold(n)
     sizes = [" ".join(str(x) for x in axes) for axes in AXES]
-    model = mujoco.MjModel.from_xml_string(MUJOCO.format(*sizes))
+    model = mujoco.MjModel.from_xml_string(MUJOCO.format(iterations, *sizes))
     places = np.zeros((n, 14))
     places[:, 3] = 1.0
     places[:, 7:10] = rows.poses[:, :3, 3]
@@ -289,7 +291,11 @@ def measured_mujoco(n: int, device: str = "cuda") -> dict[str, float]:
         world, found = data.contact.worldid.numpy()[:count], data.contact.dist.numpy()[:count]
     truth = so.distances(rows.a, rows.b, np.eye(4), rows.poses).distance[world]
     size = rows.a.size + rows.b.size
-    return {"rate": rate, "rows": float(count), "distance": float(np.abs(found - truth).max() / size)}
+    return {
+        "rate": rate,
+        "rows": float(count),
+        "distance": float(np.abs(found - truth).max() / size),
+    }
 
 
 def measure(n: int) -> dict[str, dict[str, float]]:
@@ -299,7 +305,10 @@ def measure(n: int) -> dict[str, dict[str, float]]:
     for kernel in ("frames_sphere", "frames_nurbs_4"):
         found[kernel] = measured_frames(kernel, min(n, 100_000))
     try:
-        found["mujoco_warp"] = measured_mujoco(n)
+        if compiler.SIMULATED:
+            raise ModuleNotFoundError("Python has the GPU's place")
+        for iterations in ITERATIONS:
+            found[f"mujoco_warp, {iterations} iterations"] = measured_mujoco(n, iterations)
     except ModuleNotFoundError as missing:
         print(f"mujoco_warp is left out: {missing}")
     for name, row in found.items():

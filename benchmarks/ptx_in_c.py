@@ -20,7 +20,13 @@ from numpy.typing import NDArray
 KINDS = ("add", "sub", "mul", "fma", "div", "rcp", "sqrt")
 """Operations that are counted, in double precision."""
 
-REGISTERS = {"%p": "uint8_t", "%rs": "uint16_t", "%r": "uint32_t", "%fd": "double", "%rd": "uint64_t"}
+REGISTERS = {
+    "%p": "uint8_t",
+    "%rs": "uint16_t",
+    "%r": "uint32_t",
+    "%fd": "double",
+    "%rd": "uint64_t",
+}
 TYPES = {
     "f64": "double", "u64": "uint64_t", "s64": "int64_t", "b64": "uint64_t", "u32": "uint32_t",
     "s32": "int32_t", "b32": "uint32_t", "u16": "uint16_t", "s16": "int16_t", "pred": "uint8_t",
@@ -54,7 +60,8 @@ def written_in_c(ptx: str) -> str:
     lines, declared = [], []
     for name, kind in REGISTERS.items():
         for count in re.findall(rf"\.reg \.\w+\s+{name}<(\d+)>", body):
-            declared.append(f"{kind} {', '.join(_name(f'{name}{k}') for k in range(int(count)))};")
+            every = ", ".join(_name(f"{name}{k}") for k in range(int(count)))
+            declared += [f"{kind} {every};"]
     # braces on lines of their own hold a register for a while
     body = re.sub(r"^\s*[{}]\s*$", "", body, flags=re.MULTILINE)
     declared.append("uint32_t r_temp;")
@@ -121,7 +128,8 @@ def _instruction(said: str) -> str:
     if parts[0] == "cvt":
         value = _value(given[1], kind)
         whole = parts[1] == "rzi" and kind == "f64"
-        return f"{_name(given[0])} = {f'whole_of({value})' if whole else f'({TYPES[parts[-2]]}){value}'};"
+        made = f"whole_of({value})" if whole else f"({TYPES[parts[-2]]}){value}"
+        return f"{_name(given[0])} = {made};"
     if parts[0] == "setp":
         return f"{_name(given[0])} = {_compared(parts[1], *(_value(x, kind) for x in given[1:]))};"
     if parts[0] == "selp":
@@ -229,7 +237,11 @@ def compiled_in_c(ptx: str, folder: Path | None = None, *, contract: bool = Fals
         place = folder or Path(own)
         source, library = place / "kernel.c", place / "kernel.so"
         source.write_text(written_in_c(ptx), encoding="utf-8")
-        how = ["-O2" if contract else "-O1", "-march=native", f"-ffp-contract={'fast' if contract else 'off'}"]
+        how = [
+            "-O2" if contract else "-O1",
+            "-march=native",
+            f"-ffp-contract={'fast' if contract else 'off'}",
+        ]
         command = ["cc", *how, "-w", "-shared", "-fPIC", str(source), "-o", str(library), "-lm"]
         subprocess.run(command, check=True)
         return Run(ctypes.CDLL(str(library)))

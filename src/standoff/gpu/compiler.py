@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from importlib.metadata import version
 from importlib.util import find_spec
 from types import SimpleNamespace
@@ -29,14 +30,15 @@ if not version("numba-cuda").startswith(WRITTEN_FOR):
         name="numba_cuda",
     )
 
-from numba import cuda  # noqa: E402
-from numba.cuda import dispatcher  # noqa: E402
+cuda: Any = import_module("numba.cuda")
+dispatcher: Any = import_module("numba.cuda.dispatcher")
 
 SIMULATED = bool(cuda.config.ENABLE_CUDASIM)
 """Does Python take the GPU's place (NUMBA_ENABLE_CUDASIM=1)? For tests of a few rows."""
 
 Target = tuple[int, int]
 """A compute capability: (9, 0) of an H200."""
+
 
 def _for_a_device(part: Any) -> Any:
     """What numba-cuda calls in place of a kernel: compiled from the same source.

@@ -216,10 +216,8 @@ def _sound_poses(poses: PosesLike, name: str, n: int) -> Array:
             f"{name} has {counted(len(matrices), 'pose')}: give {n}, or one for all rows.", name
         )
     if refused.any():
-        raise StandoffError(
-            f"{name}[{int(refused.argmax())}] is not a pose: {matrices[refused.argmax()].tolist()}.",
-            name,
-        )
+        first = int(refused.argmax())
+        raise StandoffError(f"{name}[{first}] is not a pose: {matrices[first].tolist()}.", name)
     return flat_poses(matrices)
 
 
