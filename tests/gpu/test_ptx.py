@@ -1,5 +1,5 @@
-"""What is compiled for a GPU, without one: what each kernel takes, and its PTX, written in C and run
-here, beside the processor's answers and gaps that are exact by construction."""
+"""What is compiled for a GPU, without one: what each kernel takes, and its PTX, written in C and
+run here, beside the processor's answers and gaps that are exact by construction."""
 
 import re
 import shutil
