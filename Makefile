@@ -7,7 +7,7 @@ CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml studies/pyproject.toml constraints.txt
 
-.PHONY: venv torch demo paper bench wheel numba-range check test soak lint types layers docs clean
+.PHONY: venv torch gpu demo paper bench wheel numba-range check test soak lint types layers docs clean
 
 venv: $(ALL)
 
@@ -30,6 +30,10 @@ $(CLI): $(DECLARED) | $(BIN)/python
 # Not in `venv`: from PyPI it comes with gigabytes of CUDA. Without it its tests are skipped.
 torch: $(ALL)
 	$(PIP) install -q -c constraints.txt -e ".[torch]"
+
+# Not in `venv` either: half a gigabyte of compilers for GPUs. Without it its tests are skipped.
+gpu: $(ALL)
+	$(PIP) install -q -c constraints.txt -e ".[gpu]"
 
 demo: $(CLI)
 	@mkdir -p build

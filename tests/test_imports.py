@@ -36,7 +36,7 @@ STUDIES = ("paper", "soak", "accuracy")
 # What draws, writes, reads formulas, or serves the command line alone.
 EXTRAS = {
     *("PIL", "flint", "jinja2", "matplotlib", "pyarrow", "rich", "sympy", "tyro"),
-    *("casadi", "jax", "torch"),
+    *("casadi", "jax", "numba_cuda", "torch"),
 }
 # Parts of the library that a query of two ready-made shapes has no use for.
 UNUSED = (
@@ -46,6 +46,7 @@ UNUSED = (
     "scene",
     "automaton",
     "frameworks",
+    "gpu",
     "impact",
     "points",
     "recording",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from standoff.tracking.inputs import check_pair
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
 from standoff.tracking.proximity import Proximity
-from standoff.tracking.reached import cold_table
+from standoff.tracking.reached import AddressTable, cold_table
 from standoff.tracking.refused_rows import RefusedPoses, RefusedRows
 from standoff.tracking.rows import motion_row
 from standoff.tracking.threads import in_parts
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
     from standoff.tracking.derivatives import DerivativeArrays
 
 Array = NDArray[np.float64]
+
+ColdRows = Callable[[AddressTable, tuple[Array, Array], Array, int], None]
+"""Answers cold rows as `cold_rows` does."""
 FEATURE = np.dtype([("kind", "U6"), ("index", np.int64)])
 """A feature in an array: "face", "edge" or "vertex", and its number among those."""
 
@@ -229,8 +233,9 @@ def answered_rows(
     warm: bool = False,
     workers: int = 1,
     within: float | None = None,
+    cold: ColdRows | None = None,
 ) -> Distances:
-    """`distances`, without a warning."""
+    """`distances`, without a warning. `cold` is what answers cold rows, if not the processor."""
     whole_number(workers, "workers")
     check_pair(a, b)
     horizon = None if within is None else positive(within, "within")
@@ -254,7 +259,7 @@ def answered_rows(
         refused[slice(None) if poses.given == 1 and len(poses.rows) else poses.rows] = True
     rows = np.full((n, K.N_OUT), np.nan)
     if tracker is None:
-        _cold(cold_table(a, b, horizon).address, (of_a, of_b), rows, workers)
+        (cold or cold_rows)(cold_table(a, b, horizon), (of_a, of_b), rows, workers)
     else:
         _warm(tracker, (of_a, of_b), rows, refused)
     errors = RefusedRows(refused, refused_a, refused_b, planar)
@@ -306,12 +311,14 @@ def _checked(
     return matrices, np.where(refused, 0, given.repaired + repaired), told
 
 
-def _cold(table: int, poses: tuple[Array, Array], rows: Array, workers: int) -> None:
+def cold_rows(
+    table: AddressTable, poses: tuple[Array, Array], rows: Array, workers: int = 1
+) -> None:
     """Answer every row by itself."""
     done = np.zeros(len(rows), dtype=np.int64)
 
     def part(first: int, end: int) -> None:
-        batch.starts(table, *poses, first, end, rows, done)
+        batch.starts(table.address, *poses, first, end, rows, done)
 
     in_parts(part, len(rows), workers)
 

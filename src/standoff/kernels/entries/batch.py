@@ -14,6 +14,7 @@ from standoff.kernels.compiler.decorators import (
     kernel,
     pointer,
     reals_on_stack,
+    small,
     stack_counts,
     stack_log,
 )
@@ -22,9 +23,10 @@ from standoff.kernels.entries.blocks import N_TABLE, copy_pose, tabled_options, 
 from standoff.kernels.entries.frames import clear_counts, start_frame
 from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.frame.restart import anywhere
-from standoff.kernels.lanes.ellipsoids import N_ANSWER, TRIED, query_block, whole_ellipsoid
+from standoff.kernels.lanes.ellipsoids import N_ANSWER, query_block
 from standoff.kernels.lanes.layout import N_POSE, lane, put_pose
 from standoff.kernels.lanes.layout import ROWS as LANE_ROWS
+from standoff.kernels.lanes.rows import TRIED, query_row, whole_ellipsoid
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state.arrays import (
@@ -97,19 +99,31 @@ def place_rows(table, first, end, poses, poses_a):
     that lack."""
     motion = reals_on_stack(N_MOTION)
     for row in range(LANE_ROWS):
-        k = min(first + row, end - 1)
-        copy_pose(ahead(table.poses_a, table.stride_a * k), ahead(motion, POSE_A))
-        copy_pose(ahead(table.poses_b, table.stride_b * k), ahead(motion, POSE_B))
-        put_pose(relative_pose(ahead(motion, POSE_A), ahead(motion, POSE_B)), poses, row)
-        put_pose(Pose(read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)), poses_a, row)
+        copy_poses(table, min(first + row, end - 1), motion)
+        pose, pose_a = placed(motion)
+        put_pose(pose, poses, row)
+        put_pose(pose_a, poses_a, row)
+
+
+@small
+def copy_poses(table, k, motion):
+    """Copy a row's poses as 12 numbers each. Are their last rows 0 0 0 1?"""
+    square = copy_pose(ahead(table.poses_a, table.stride_a * k), ahead(motion, POSE_A))
+    return copy_pose(ahead(table.poses_b, table.stride_b * k), ahead(motion, POSE_B)) and square
+
+
+@small
+def placed(motion):
+    """(B's pose in A's frame, A's) of a row's motion."""
+    pose_a = Pose(read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9))
+    return relative_pose(ahead(motion, POSE_A), ahead(motion, POSE_B)), pose_a
 
 
 @kernel
 def are_poses(table, k):
     """Would a row by itself be refused?"""
     motion = reals_on_stack(N_MOTION)
-    square = copy_pose(ahead(table.poses_a, table.stride_a * k), ahead(motion, POSE_A))
-    square = copy_pose(ahead(table.poses_b, table.stride_b * k), ahead(motion, POSE_B)) and square
+    square = copy_poses(table, k, motion)
     return square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))
 
 
@@ -118,12 +132,17 @@ def write_row(answers, row, out):
     """Write a row that was answered in lanes."""
     for k in range(OUT_COUNTS):
         out[k] = answers[lane(k, row)]
+    complete_row(answers[lane(TRIED, row)], out)
+
+
+@small
+def complete_row(tried, out):
+    """Write what the lanes leave out of a row that is apart."""
     for k in range(OUT_RATE, RESIDUAL):
         out[k] = np.nan
     for k in range(N_COUNTS):
         out[OUT_COUNTS + k] = 0.0
     out[STATUS] = CONVERGED
-    tried = answers[lane(TRIED, row)]
     out[OUT_COUNTS + EVALUATIONS], out[OUT_COUNTS + CORRECTIONS] = tried + 2.0, tried + 1.0
 
 
@@ -143,6 +162,23 @@ def start_ellipsoids(table, first, end):
                 table.done[k] = FINE
             else:
                 start_row(table, k)
+
+
+@kernel
+def start_ellipsoid(table, k):
+    """Answer a row by itself as the lanes do; True, or False where it is not proven so.
+
+    What a thread of a GPU does (`standoff.gpu`).
+    """
+    motion, out = reals_on_stack(N_MOTION), ahead(table.outs, N_OUT * k)
+    square = copy_poses(table, k, motion)
+    if not (square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))):
+        return False
+    pose, pose_a = placed(motion)
+    goal = min(table.options.tolerance, START_GAP)
+    good = query_row(table.pair, goal, pose, pose_a, out)
+    complete_row(out[TRIED], out)
+    return good
 
 
 @entry(INT, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")

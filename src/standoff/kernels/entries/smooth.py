@@ -8,9 +8,10 @@ from typing import Any
 
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import dimension
-from standoff.kernels.compiler.decorators import entry, kernel, small
+from standoff.kernels.compiler.decorators import ahead, entry, kernel, small
 from standoff.kernels.compiler.entry import INT, REAL
-from standoff.kernels.frame.record import read_call
+from standoff.kernels.frame.inputs import inputs_at, refused
+from standoff.kernels.frame.record import Called, read_call
 from standoff.kernels.frame.smooth import (
     EDGE_AND_FACE,
     FACE_AND_EDGE,
@@ -20,7 +21,16 @@ from standoff.kernels.frame.smooth import (
     seen_on_line,
     smooth_frame,
 )
+from standoff.kernels.state.arrays import (
+    BLOCK_HAS_TWIST,
+    BLOCK_MOTION,
+    BLOCK_STATE,
+    BLOCK_TIME_STEP,
+    FINE,
+)
 from standoff.kernels.state.state import read_place
+
+NO_WORK = 0  # a smooth frame counts nothing on the way
 
 
 @small
@@ -86,6 +96,19 @@ def called_of_and_planes(look_a, record, h):
 @small
 def on_edge(ints, feature):
     return dimension(ints, feature) == 1
+
+
+@kernel
+def smooth_in_block(look_a, look_b, pair, options, block):
+    """`smooth_frame` of faces on a block (``blocks``), in place: 1, or 0 with nothing changed.
+
+    What a thread of a GPU does (`standoff.gpu`).
+    """
+    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
+    if refused(pair, inputs) != FINE:
+        return 0
+    call = Called(pair, inputs, options, ahead(block, BLOCK_STATE), block, NO_WORK)
+    return smooth_frame(look_a, look_b, FACES, call, block[BLOCK_TIME_STEP])
 
 
 @entry(INT, REAL, work="smooth")

@@ -255,6 +255,20 @@ def descended(look_a, look_b, dims, pair, motion, place, tolerance, most):
 
 
 @small
+def known(dimension, cone):
+    """A cone, its kind as it follows from the dimension of what was looked at."""
+    kind = SINGLE if dimension == 2 else ARC
+    return NormalCone(kind, cone.first, cone.last, cone.tangent, cone.noise)
+
+
+@small
+def known_cones(dims, cones):
+    """`known` of both. A compiler that must find the kinds out itself may not, and then keeps the
+    certificate's cases for vertices: for a GPU that is 200,000 lines in place of 3,000."""
+    return Cones(known(dims[0], cones.a), known(dims[1], cones.b), cones.x_a, cones.y_b, cones.gap)
+
+
+@small
 def smooth_frame(look_a, look_b, dims, call, h):
     """Make the answer and the next state of a frame: 1; or write nothing: 0.
 
@@ -276,7 +290,8 @@ def smooth_frame(look_a, look_b, dims, call, h):
     )
     if not done:
         return 0
-    d, lower, normal, blur = certify_cones(pair, pose, place, looked.cones, ORIGIN)
+    cones = known_cones(dims, looked.cones)
+    d, lower, normal, blur = certify_cones(pair, pose, place, cones, ORIGIN)
     outcome = outcome_of(pair, pose, d, lower, blur, options.tolerance)
     if outcome != CERTIFIED or d <= POLISHED * contact_scale(pair):
         return 0

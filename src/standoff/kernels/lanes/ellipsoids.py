@@ -1,18 +1,12 @@
-"""Cold queries of two ellipsoids, a block of rows at a time.
-
-The normal is found by support functions, the witness points by one step of the pair system from
-there; the certificate weighs them as it does any others.
-"""
+"""Cold queries of two ellipsoids, a block of rows at a time: `rows`, for all of a block."""
 
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.vectors import add, rotate, sub
 from standoff.kernels.body import layout as L
-from standoff.kernels.body.features import chart_record, moved_jet, outward, pair_span
-from standoff.kernels.body.jets import affine_at, chart_parameters, mapped_by, sphere_jet
+from standoff.kernels.body.features import chart_record
 from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack, small
 from standoff.kernels.depth.penetration import contact_scale
-from standoff.kernels.frame.answer import swept_point
 from standoff.kernels.lanes.layout import (
     N_POSE,
     N_VECTOR,
@@ -23,6 +17,16 @@ from standoff.kernels.lanes.layout import (
     twelve_of,
     vector_of,
 )
+from standoff.kernels.lanes.rows import (
+    TRIED,
+    Best,
+    Witness,
+    better_of,
+    correction,
+    map_of,
+    put_answer,
+    weighed,
+)
 from standoff.kernels.lanes.support import (
     Turn,
     ahead,
@@ -32,24 +36,7 @@ from standoff.kernels.lanes.support import (
     is_settled,
     turned,
 )
-from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone, certify_cones
-from standoff.kernels.pair.certified import CERTIFIED, outcome_of
-from standoff.kernels.pair.newton import ldl, ldl_solve, metric_norm, pair_metric
-from standoff.kernels.pair.system import gradient, hessian, projection_errors
-from standoff.kernels.state.arrays import (
-    DISTANCE,
-    LOWER_BOUND,
-    NORMAL,
-    OUT_COUNTS,
-    OUT_MODE,
-    OUT_Q,
-    POINT_A,
-    POINT_B,
-    RESIDUAL,
-    UPPER_BOUND,
-)
-from standoff.kernels.tolerances import AT_REST, EPS, LANE_TURNS, POLISHED
-from standoff.kernels.values import ORIGIN, Place
+from standoff.kernels.tolerances import LANE_TURNS, POLISHED
 
 # A side's lanes: parameters, how deep its chart sees the point; then the chart's affine map is
 # 12 lanes of their own.
@@ -59,9 +46,7 @@ N_SIDE = 4 * ROWS
 # the count.
 STEP, VALUE, SHARE, COUNT = 3, 6, 7, 8
 N_TURN = 9 * ROWS
-# An answer's lanes: the numbers of a row before its counts, then how many normals were tried.
-TRIED = OUT_COUNTS
-N_ANSWER = (OUT_COUNTS + 1) * ROWS
+N_ANSWER = (TRIED + 1) * ROWS  # an answer's lanes
 
 
 class Side(NamedTuple):
@@ -70,22 +55,6 @@ class Side(NamedTuple):
     chart: Any  # numbers
     at: Any  # N_SIDE
     affine: Any  # N_POSE: of the charts
-
-
-@small
-def whole_ellipsoid(ints):
-    """Is a body's boundary one face of charts of an ellipsoid, without any edge?"""
-    if ints[L.DIMENSION] != 3 or ints[L.N_FACES] != 1 or ints[L.N_EDGES] + ints[L.N_VERTICES] > 0:
-        return False
-    for c in range(ints[L.N_CHARTS]):
-        if ints[chart_record(ints, c) + L.CHART_KIND] != L.SPHERE:
-            return False
-    return True
-
-
-@small
-def map_of(ints, reals, chart):
-    return affine_at(reals, ints[chart_record(ints, chart) + L.CHART_REALS] + L.AFFINE)
 
 
 @small
@@ -154,12 +123,11 @@ def see_from(chart, o, reals, points, side):
     """Take a chart, whose reals begin at o, where it sees a point deeper than those before it."""
     at = side.at
     for row in range(ROWS):
-        p, q, depth = chart_parameters(reals, o, vector_of(points, 0, row))
-        deeper = depth > at[lane(DEPTH, row)]
-        at[lane(P, row)] = p if deeper else at[lane(P, row)]
-        at[lane(Q, row)] = q if deeper else at[lane(Q, row)]
-        at[lane(DEPTH, row)] = max(depth, at[lane(DEPTH, row)])
-        side.chart[row] = chart if deeper else side.chart[row]
+        last = Best(side.chart[row], at[lane(P, row)], at[lane(Q, row)], at[lane(DEPTH, row)])
+        best = better_of(last, chart, o, reals, vector_of(points, 0, row))
+        at[lane(P, row)], at[lane(Q, row)] = best.p, best.q
+        at[lane(DEPTH, row)] = best.depth
+        side.chart[row] = best.chart
 
 
 @small
@@ -178,20 +146,23 @@ def choose_charts(ints, reals, points, side):
 
 
 @small
-def seen(side, row):
-    """(jet, normal) of a row's witness point, in its body's frame."""
-    jet = sphere_jet(side.at[lane(P, row)], side.at[lane(Q, row)])
-    jet = mapped_by(twelve_of(side.affine, row), jet)
-    return jet, outward(side.at[lane(OUTWARD, row)], jet)
+def witness_of(side, row):
+    """A row's witness point."""
+    at = side.at
+    return Witness(
+        side.chart[row],
+        at[lane(P, row)],
+        at[lane(Q, row)],
+        at[lane(OUTWARD, row)],
+        twelve_of(side.affine, row),
+    )
 
 
 @small
 def correct(poses, a, b, steps):
     """Newton's step of the pair system, of every row."""
     for row in range(ROWS):
-        jet_a, jet_b = seen(a, row)[0], moved_jet(pose_of(poses, row), seen(b, row)[0])
-        g = gradient(projection_errors(jet_a, jet_b))
-        step = ldl_solve(ldl(hessian(jet_a, jet_b)), g)
+        step = correction(pose_of(poses, row), witness_of(a, row), witness_of(b, row))
         for k in range(4):
             steps[lane(k, row)] = step[k]
 
@@ -209,41 +180,12 @@ def take(steps, a, b):
 def weigh(pair, tolerance, poses, poses_a, a, b, answers, good):
     """The numbers of every row's answer, by `standoff.kernels.state.arrays`; good[row] is 1 where
     it is converged and proven."""
-    radius_a, radius_b = pair.reals_a[L.RADIUS], pair.reals_b[L.RADIUS]
     near = POLISHED * contact_scale(pair)
     for row in range(ROWS):
-        pose, world = pose_of(poses, row), pose_of(poses_a, row)
-        (jet_a, n_a), (own_b, n_b) = seen(a, row), seen(b, row)
-        jet_b = moved_jet(pose, own_b)
-        cones = Cones(
-            NormalCone(SINGLE, n_a, n_a, ORIGIN, 0.0),
-            NormalCone(SINGLE, n_b, n_b, ORIGIN, 0.0),
-            jet_a[0],
-            own_b[0],
-            sub(jet_b[0], jet_a[0]),
-        )
-        p, q, r, s = a.at[lane(P, row)], a.at[lane(Q, row)], b.at[lane(P, row)], b.at[lane(Q, row)]
-        place = Place(0, a.chart[row], 0, b.chart[row], p, q, r, s)
-        d, lower, n, blur = certify_cones(pair, pose, place, cones, ORIGIN)
-        slope = metric_norm(pair_metric(jet_a, jet_b), gradient(projection_errors(jet_a, jet_b)))
-        at_rest = slope <= AT_REST * EPS * pair_span(pair, pose.p, d)
-        proven = outcome_of(pair, pose, d, lower, blur, tolerance) == CERTIFIED
-        apart = lower > radius_a + radius_b and d > near
-        good[row] = 1 if at_rest and proven and apart else 0
-        answers[lane(DISTANCE, row)] = d - radius_a - radius_b
-        answers[lane(LOWER_BOUND, row)] = lower - radius_a - radius_b
-        answers[lane(UPPER_BOUND, row)] = d - radius_a - radius_b
-        x_a = swept_point(world.R, world.p, jet_a[0], radius_a, n)
-        x_b = swept_point(world.R, world.p, jet_b[0], -radius_b, n)
-        put_vector(x_a, answers, POINT_A, row)
-        put_vector(x_b, answers, POINT_B, row)
-        put_vector(rotate(world.R, n), answers, NORMAL, row)
-        answers[lane(OUT_MODE, row)], answers[lane(OUT_MODE + 2, row)] = 0.0, 0.0
-        answers[lane(OUT_MODE + 1, row)] = float(a.chart[row])
-        answers[lane(OUT_MODE + 3, row)] = float(b.chart[row])
-        answers[lane(OUT_Q, row)], answers[lane(OUT_Q + 1, row)] = p, q
-        answers[lane(OUT_Q + 2, row)], answers[lane(OUT_Q + 3, row)] = r, s
-        answers[lane(RESIDUAL, row)] = slope
+        of_a, of_b = witness_of(a, row), witness_of(b, row)
+        found = weighed(pair, tolerance, near, pose_of(poses, row), of_a, of_b)
+        good[row] = 1 if found.good else 0
+        put_answer(answers, ROWS, row, pair, pose_of(poses_a, row), (of_a, of_b), found)
 
 
 @kernel

@@ -14,6 +14,19 @@ def lane(k, row):
 
 
 @small
+def strided(k, width, row):
+    """`lane` of `width` rows side by side."""
+    return width * k + row
+
+
+@small
+def put_strided(x, block, k, width, row):
+    """`put_vector` of `width` rows side by side."""
+    for i in range(3):
+        block[strided(k + i, width, row)] = x[i]
+
+
+@small
 def vector_of(block, k, row):
     """Three numbers of a row, the k-th and those behind it."""
     return block[lane(k, row)], block[lane(k + 1, row)], block[lane(k + 2, row)]

@@ -1,0 +1,99 @@
+"""What a thread does: one row, by the kernels' own functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from numba import types
+
+from standoff.gpu.compiler import SIMULATED, cuda, launched
+from standoff.kernels.compiler.decorators import ahead, pointer
+from standoff.kernels.entries import smooth
+from standoff.kernels.entries.batch import Table, start_ellipsoid
+from standoff.kernels.state.arrays import BLOCK_MOTION, BLOCK_POLYTOPE, N_BLOCK
+from standoff.kernels.state.options import read_options
+from standoff.kernels.values import Pair
+
+INTS, REALS = types.Array(types.int64, 1, "C"), types.Array(types.float64, 1, "C")
+ROWS, POSES = types.Array(types.float64, 2, "C"), types.Array(types.float64, 3, "C")
+PAIR = types.Tuple((INTS, REALS, INTS, REALS))
+
+N_GIVEN = BLOCK_POLYTOPE - BLOCK_MOTION
+"""Numbers that a frame is given: the motion, the time step, 1 where there are twists."""
+
+PER_BLOCK = 128
+"""Threads a block: with 255 registers each, two blocks fill a multiprocessor."""
+
+
+def cold_ellipsoids(
+    pair: Any, options: Any, poses_a: Any, poses_b: Any, outs: Any, done: Any
+) -> None:
+    """Row k of ``so.distances`` of two ellipsoids, as the lanes answer it: done[k] is 1 where they
+    prove it. poses (n, 4, 4), or (1, 4, 4) for all rows; outs (n, N_OUT)."""
+    k = cuda.grid(1)
+    if k < len(outs):
+        bodies = Pair(
+            pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0)
+        )
+        table = Table(
+            bodies,
+            read_options(pointer(options, 0)),
+            pointer(poses_a, 0),
+            pointer(poses_b, 0),
+            0 if len(poses_a) == 1 else 16,
+            0 if len(poses_b) == 1 else 16,
+            pointer(outs, 0),
+            0,  # `done` is this function's to write
+        )
+        done[k] = 1 if start_ellipsoid(table, k) else 0
+
+
+def _frames(look: Any) -> Callable[..., None]:
+    def frames(pair: Any, options: Any, given: Any, blocks: Any, done: Any) -> None:
+        k = cuda.grid(1)
+        if k < len(blocks):
+            bodies = Pair(
+                pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0)
+            )
+            block, new = pointer(blocks, N_BLOCK * k), pointer(given, N_GIVEN * k)
+            motion = ahead(block, BLOCK_MOTION)
+            for i in range(N_GIVEN):
+                motion[i] = new[i]
+            done[k] = smooth.smooth_in_block(
+                look, look, bodies, read_options(pointer(options, 0)), block
+            )
+
+    return frames
+
+
+class Kernel(NamedTuple):
+    """What a thread does, and for which types."""
+
+    function: Callable[..., None]
+    signature: tuple[Any, ...]
+
+
+COLD = "cold_ellipsoids"
+FRAMES = (PAIR, REALS, ROWS, ROWS, INTS)
+KERNELS = {
+    COLD: Kernel(cold_ellipsoids, (PAIR, REALS, POSES, POSES, ROWS, INTS)),
+    "frames_sphere": Kernel(_frames(smooth.on_sphere), FRAMES),
+    "frames_nurbs_2": Kernel(_frames(smooth.on_nurbs_2), FRAMES),
+    "frames_nurbs_3": Kernel(_frames(smooth.on_nurbs_3), FRAMES),
+    "frames_nurbs_4": Kernel(_frames(smooth.on_nurbs_4), FRAMES),
+    "frames_nurbs_5": Kernel(_frames(smooth.on_nurbs_5), FRAMES),
+}
+"""All that is compiled for a GPU, by name."""
+
+
+@lru_cache(maxsize=len(KERNELS))
+def _launched(name: str) -> Any:
+    return launched(KERNELS[name].function)
+
+
+def start_threads(name: str, n: int, arguments: tuple[Any, ...]) -> None:
+    """Let n threads do it; the arrays are the GPU's. Returns before they are done."""
+    per_block = 1 if SIMULATED else PER_BLOCK  # the simulator makes each a thread of Python
+    _launched(name)[(n + per_block - 1) // per_block, per_block](*arguments)
