@@ -279,7 +279,7 @@ def rows_at_made_poses(a: Body, b: Body, poses: tuple[Array, Array], within: flo
     within : float or None
     """
     rows = np.full((max(map(len, poses)), K.N_OUT), np.nan)
-    _cold(cold_table(a, b, within).address, poses, rows, 1)
+    cold_rows(cold_table(a, b, within), poses, rows)
     return rows
 
 

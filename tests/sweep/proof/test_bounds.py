@@ -190,10 +190,10 @@ def test_along_any_normal_a_turn_adds_no_more_to_the_support(
     assert used > 0.9  # the bound is met, all but
 
 
-def test_a_turn_before_leads_the_normal_off_the_axis_of_the_next(
+def test_a_turn_about_the_normal_turns_it_by_no_more_than_those_before(
     make: Make, rng: np.random.Generator
 ) -> None:
-    """In the middle the normal is along the second turn's axis, about which it would not turn."""
+    """In the middle the normal is along the second turn's axis; it is not where the first differs."""
     job = make(SPATIAL)
     box = Proof(job, 0.0).box
     mover, columns = box.movers[0], len(job.parameters)

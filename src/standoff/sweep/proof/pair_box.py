@@ -10,7 +10,8 @@ the parameters differ from that, the bodies are still apart along n by L less
   where s >= R cos δ: no point of the core is beyond the ball, nor beyond the plane of the support.
 
 A turn by θ about an axis at the angle α from n turns n by 2 asin(sin(θ/2) sin α). Of several turns
-the angles add up, and those before may have changed the α of those behind by as much as they are.
+the angles add up: let v be n after those before, in the middle, and v' anywhere else. The turn T'
+leaves the angle of T'v' and T'v as it is, and T'v differs from Tv by that of the turn at v.
 The support of the witness point stands for s: it is not greater, and what is taken falls with s.
 
 From above, the distance is at most that in the middle and all that the bodies' points can move.
@@ -34,7 +35,12 @@ from standoff.sweep.parameters import moved as moved_poses
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.extent import farthest
-from standoff.sweep.proof.tolerances import CELL_ROUNDINGS, RANGE_ROUNDINGS, UNIT_NORMAL
+from standoff.sweep.proof.tolerances import (
+    CELL_ROUNDINGS,
+    RANGE_ROUNDINGS,
+    SQUARE_ROUNDINGS,
+    UNIT_NORMAL,
+)
 from standoff.tracking.answers import proven
 from standoff.tracking.many_distances import Distances, answered_rows
 
@@ -138,7 +144,8 @@ class Mover:
         seen = normal @ self.home
         whole, alone = np.zeros(len(at)), {}
         for k, axis in self.turns:
-            across = _most_sine(np.abs(seen[:, axis]), whole)
+            left = np.maximum(0.0, 1.0 - seen[:, axis] * seen[:, axis])
+            across = np.sqrt(left + SQUARE_ROUNDINGS * EPS)
             sine = np.sin(np.minimum(half[:, k], np.pi) / 2.0)
             alone[k] = 2.0 * np.arcsin(np.minimum(1.0, sine * across))
             whole = whole + alone[k]
@@ -153,13 +160,6 @@ class Mover:
         more = s * np.cos(angle) + square * np.sin(angle) - s
         added: Array = np.where(s >= self.far * np.cos(angle), self.far - s, more)
         return added
-
-
-def _most_sine(cosine: Array, doubt: Array) -> Array:
-    """Return the greatest sine of an angle to an axis, of a direction that is known to an angle."""
-    angle = np.arccos(np.minimum(cosine, 1.0)) + doubt
-    sine: Array = np.where(angle >= np.pi / 2.0, 1.0, np.sin(np.minimum(angle, np.pi / 2.0)))
-    return sine
 
 
 def _seen_after(seen: Array, axis: int, angle: Array) -> Array:

@@ -10,6 +10,10 @@ RANGE_ROUNDINGS: Final = 8.0
 """Roundings (of a range's ends) by which the number in a cell's middle may be off: the product and
 sum with both ends have 3, the turn from degrees to rad 2."""
 
+SQUARE_ROUNDINGS: Final = 16.0
+"""Roundings (of 1) by which the square of the sine of a normal's angle to an axis may be off: the
+normal's number along it has passed six turns."""
+
 UNIT_NORMAL: Final = 1e-9
 """By which the square of a normal's length, without a unit, may differ from 1; one that is nan, or
 was not found, differs by more."""
