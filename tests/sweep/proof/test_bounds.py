@@ -193,7 +193,7 @@ def test_along_any_normal_a_turn_adds_no_more_to_the_support(
 def test_a_turn_about_the_normal_turns_it_by_no_more_than_those_before(
     make: Make, rng: np.random.Generator
 ) -> None:
-    """In the middle the normal is along the second turn's axis; it is not where the first differs."""
+    """In the middle the normal is along the second turn's axis, and elsewhere it is not."""
     job = make(SPATIAL)
     box = Proof(job, 0.0).box
     mover, columns = box.movers[0], len(job.parameters)
