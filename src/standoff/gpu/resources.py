@@ -16,6 +16,7 @@ from typing import NamedTuple
 from standoff.errors import StandoffError
 from standoff.gpu.compiler import Target, ptx_of
 from standoff.gpu.threads import KERNELS
+from standoff.whole_files import write_whole
 
 DOUBLE = re.compile(r"^\s*(?:@!?%p\d+\s+)?(add|sub|mul|fma|div|rcp|sqrt)\S*\.f64\s", re.MULTILINE)
 FUNCTION = re.compile(r"^\s*(?:\.visible |\.weak )?\.func", re.MULTILINE)
@@ -139,7 +140,7 @@ def assembled(ptx: str, target: Target) -> str:
     """What ptxas tells of a kernel when it makes machine code of it."""
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "kernel.ptx"
-        source.write_text(ptx, encoding="utf-8")
+        write_whole({source: lambda file: file.write(ptx.encode("utf-8"))})
         command = [assembler(), "-v", f"-arch=sm_{target[0]}{target[1]}", str(source)]
         command += ["-o", str(Path(folder) / "kernel.cubin")]
         done = subprocess.run(command, capture_output=True, text=True)
