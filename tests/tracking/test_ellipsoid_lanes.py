@@ -67,6 +67,24 @@ def test_gaps_that_are_exact_by_construction(axes_a, axes_b, seed, decade):
     assert in_lanes(found).mean() > 0.9
 
 
+def test_a_sheared_ellipsoid_is_one_with_other_axes(rng):
+    """Its map takes the ball to what its singular values and left vectors make of it."""
+    axes, shear = np.array([0.5, 0.8, 0.9]), np.eye(4)
+    shear[:3, :3] += rng.uniform(-0.4, 0.4, size=(3, 3))
+    left, values, _ = np.linalg.svd(shear[:3, :3] * axes)
+    left *= np.sign(np.linalg.det(left))
+    turn = np.eye(4)
+    turn[:3, :3] = left
+    poses_a, poses_b = turned(rng, 100), turned(rng, 100)
+    poses_a[:, :3, 3], poses_b[:, :3, 3] = rng.uniform(-1.5, 1.5, size=(2, 100, 3))
+    found = so.distances(so.shapes.ellipsoid(*axes).transformed(shear), TOOL, poses_a, poses_b)
+    straight = so.distances(so.shapes.ellipsoid(*values), TOOL, poses_a @ turn, poses_b)
+    apart = found.status == Status.CONVERGED
+    assert in_lanes(found)[apart].mean() > 0.9
+    assert (abs(found.distance - straight.distance)[apart] <= 1e-14).all()
+    assert (found.lower_bound <= straight.upper_bound + 1e-14).all()
+
+
 @pytest.mark.parametrize("rounding", [0.0, 0.1])
 def test_lanes_answer_as_the_general_code(rng, rounding):
     a = so.shapes.ellipsoid(0.5, 0.8, 0.9, rounding=rounding)
