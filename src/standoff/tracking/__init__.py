@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from standoff.tracking.pair_plot import plot
     from standoff.tracking.pair_system import PairSystem, pair_system
     from standoff.tracking.proximity import Counts, Event, Proximity
+    from standoff.tracking.many_states import TrackerStates
     from standoff.tracking.state import TrackerState
     from standoff.tracking.status import Status
     from standoff.tracking.tracker import Tracker
@@ -72,6 +73,7 @@ else:
                 "Proximity",
             ),
             "standoff.tracking.frame_buffer": ("FrameBuffer",),
+            "standoff.tracking.many_states": ("TrackerStates",),
             "standoff.tracking.state": ("TrackerState",),
             "standoff.tracking.status": ("Status",),
             "standoff.tracking.tracker": ("Tracker",),
@@ -104,6 +106,7 @@ __all__ = [
     "Status",
     "Tracker",
     "TrackerState",
+    "TrackerStates",
     "WitnessSet",
     "distance",
     "distances",

@@ -75,6 +75,12 @@ class Frames(NamedTuple):
         marks = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
         return cls(of_a, of_b, xi_a, xi_b, h, marks)
 
+    def repeated(self, n: int) -> Frames:
+        """The same for n frames, where it is of one."""
+        if len(self.steps) != 1:
+            return self
+        return Frames(*(np.repeat(x, n, axis=0) for x in self))
+
     def mended(self, refused: int, first: int) -> Frames:
         """The same with the rounded poses from frame `first` on repaired and counted: those of the
         body that the kernel has refused, as BAD_POSE_A or BAD_POSE_B."""
@@ -150,7 +156,7 @@ def run(
     bodies = state.proximity.bodies
     blocks, polytopes = np.empty((n + 1, K.N_BLOCK)), np.zeros((2, N_POLYTOPE))
     blocks[0] = state.proximity._out[: K.N_BLOCK]
-    _take(polytopes[0], state.proximity)
+    take_polytope(polytopes[0], state.proximity)
     unchecked = {K.BAD_POSE_A, K.BAD_POSE_B}
     longer: dict[int, Proximity] = {}
     at = 0
@@ -162,10 +168,10 @@ def run(
             continue
         if done != K.FINE:
             before = TrackerState(Proximity(*bodies, with_polytope(blocks[at], polytopes[at % 2])))
-            answer = _told(single, before, given, at)
+            answer = frame_told(single, before, given, at)
             blocks[at + 1] = answer._out[: K.N_BLOCK]
             blocks[at + 1, K.BLOCK_POLYTOPE] = 0.0
-            _take(polytopes[(at + 1) % 2], answer)
+            take_polytope(polytopes[(at + 1) % 2], answer)
             given.repaired[at] += answer.repaired
             if answer._out[K.OUT_COUNTS + N.EVENTS] > K.KEPT_EVENTS:
                 mark = int(given.repaired[at])
@@ -177,16 +183,18 @@ def run(
     return TrackerState(last), answers
 
 
-def _take(polytope: Array, answer: Proximity) -> None:
+def take_polytope(polytope: Array, answer: Proximity) -> None:
     """Take over the polytope that an answer has kept, or none."""
     kept = Block(answer._out).polytope
     polytope[:] = kept if len(kept) else 0.0
 
 
-def _told(single: Single, before: TrackerState, given: Frames, k: int) -> Proximity:
+def frame_told(
+    single: Single, before: TrackerState, given: Frames, k: int, name: str = "Frame"
+) -> Proximity:
     """A frame by itself; its number is in the error if something is wrong with it."""
     try:
         return single(before, given.frame(k), float(given.steps[k]))
     except StandoffError as error:
-        told = f"Frame {k}: {error}{given.advice(k)}"
+        told = f"{name} {k}: {error}{given.advice(k)}"
         raise type(error)(told, error.argument, error.value) from error

@@ -26,6 +26,7 @@ from standoff.tracking.reached import AddressTable, reach
 from standoff.tracking.rows import StateRow
 from standoff.tracking.specialised import checked_choice
 from standoff.tracking.state import TrackerState
+from standoff.tracking.steps_of_many import StepsMany
 
 if TYPE_CHECKING:
     from standoff.motion import PoseLike, PosesLike, TwistLike
@@ -44,7 +45,7 @@ HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", 
 
 
 @hides(*HIDDEN)
-class Tracker(MadeByKind, KeepsReadOnly):
+class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     """Keeps the minimum distance of two convex bodies while they move; of solids `SolidTracker`.
 
     Parameters

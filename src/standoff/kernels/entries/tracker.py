@@ -6,7 +6,7 @@ import numpy as np
 from numba import types
 
 from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer, reals_on_stack
-from standoff.kernels.compiler.entry import BLOCKS, INT, READ, REAL, ROWS, WRITE
+from standoff.kernels.compiler.entry import BLOCKS, INT, READ, READ_ROWS, REAL, ROWS, WRITE
 from standoff.kernels.entries.blocks import (
     Given,
     Polytopes,
@@ -37,6 +37,8 @@ from standoff.kernels.state.arrays import (
 )
 
 RECORDS = types.Tuple((ROWS, ROWS))
+MANY_RECORDS = types.Tuple((READ_ROWS, READ_ROWS, ROWS, ROWS))
+PART = types.UniTuple(INT, 2)
 
 
 @entry(INT, WRITE, INT, work="query")
@@ -183,6 +185,40 @@ def values(table, poses_a, poses_b, twists_a, twists_b, steps, first, records):
         if done != FINE:
             return k, done
     return n, FINE
+
+
+@entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, PART, MANY_RECORDS, work="runs")
+def value_of_each(table, poses_a, poses_b, twists_a, twists_b, steps, part, records):
+    """`value` of many states, one frame each: row k goes from its old block to its new one.
+
+    Arrays as of `values`. `records` are old and new blocks (n, N_BLOCK), each followed by its
+    polytopes (n, N_POLYTOPE). Makes rows part[0] .. part[1] - 1; the BLOCK_DONE of a new block says
+    what came of it.
+    """
+    old, old_kept, new, new_kept = records
+    n, of_a, of_b = len(steps), twists_a.shape[1], twists_b.shape[1]
+    square = poses_a.shape == (n, 4, 4) and poses_b.shape == (n, 4, 4)
+    rows = len(twists_a) == n and len(twists_b) == n
+    alike = old.shape == (n, N_BLOCK) and new.shape == (n, N_BLOCK)
+    kept = old_kept.shape == (n, N_POLYTOPE) and new_kept.shape == (n, N_POLYTOPE)
+    if not (square and rows and alike and kept and part[0] >= 0 and part[1] <= n):
+        return BAD_ARRAYS
+    at_a, at_b = pointer(poses_a, 0), pointer(poses_b, 0)
+    way_a, way_b = pointer(twists_a, 0), pointer(twists_b, 0)
+    for k in range(part[0], part[1]):
+        twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
+        has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
+        if not fit(of_a, has_a, of_b, has_b):
+            return BAD_ARRAYS
+        one = Given(ahead(at_a, 16 * k), ahead(at_b, 16 * k), twist_a, twist_b, has_a, has_b)
+        before = ahead(pointer(old, 0), N_BLOCK * k)
+        block = ahead(pointer(new, 0), N_BLOCK * k)
+        block[BLOCK_POLYTOPE] = 0.0
+        last = ahead(pointer(old_kept, 0), N_POLYTOPE * k)
+        own = ahead(pointer(new_kept, 0), N_POLYTOPE * k)
+        done = value_at(table, before, one, steps[k], block, Polytopes(last, own))
+        block[BLOCK_DONE] = done
+    return FINE
 
 
 @entry(INT, WRITE, work="frames")
