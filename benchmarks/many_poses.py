@@ -1,7 +1,8 @@
 """``python -m benchmarks.many_poses``: what many poses cost, and a frame whose normal is read.
 
 `so.distances` beside the kernels it calls, threads, single precision, refused rows; and one frame
-with its distance and normal by `Tracker.step` and by `Tracker.step_into`. In turn, medians.
+with its distance and normal by `Tracker.step` and by `Tracker.step_into`; and a frame of each of
+4096 states. In turn, medians.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ from standoff.kernels.state import arrays as K
 
 ROWS = 100_000
 FRAMES = 2000
+STATES = 4096
 ROUNDS = 5
+EACH, TOGETHER = "step, one state after another", "step_many"
 STEP, INTO = "step, distance and normal", "step_into, distance and buffer.normal"
 
 
@@ -88,6 +91,27 @@ def read_frames() -> dict[str, Callable[[], object]]:
     return {STEP: step, INTO: step_into, "step_into, proximity().normal": as_object}
 
 
+def many_states() -> dict[str, Callable[[], object]]:
+    """Frames of many states of one tracker, lens and ellipsoid, each moved by a thousandth."""
+    tracker = so.Tracker(so.shapes.lens(1.0, 0.45), so.shapes.ellipsoid(0.15, 0.30, 0.20))
+    rest, poses = np.eye(4), drawn(STATES)
+    way = poses[:, :3, 3] / np.linalg.norm(poses[:, :3, 3], axis=1)[:, None]
+    poses[:, :3, 3] = way * np.linspace(1.5, 2.0, STATES)[:, None]
+    states, moved = tracker.start_many(rest, poses), poses.copy()
+    moved[:, :3, 3] += 1e-3
+    alone = [states[k] for k in range(STATES)]
+
+    def one_by_one() -> object:
+        return [tracker.step(x, rest, pose) for x, pose in zip(alone, moved, strict=True)]
+
+    return {
+        EACH: one_by_one,
+        TOGETHER: lambda: tracker.step_many(states, rest, moved),
+        f"{TOGETHER}, two workers": lambda: tracker.step_many(states, rest, moved, workers=2),
+        "so.distances of the same rows": lambda: so.distances(tracker.a, tracker.b, rest, moved),
+    }
+
+
 def main() -> None:
     """Print microseconds a row, and ratios."""
     warnings.simplefilter("ignore", RefusedRowsWarning)
@@ -127,6 +151,10 @@ def main() -> None:
     for name, seconds in found.items():
         print(f"{name}: {1e6 * seconds / FRAMES:.2f} us a frame")
     print(f"{INTO} over {STEP}: {found[INTO] / found[STEP]:.2f}")
+    found = taken(many_states())
+    for name, seconds in found.items():
+        print(f"{name}: {1e6 * seconds / STATES:.2f} us a row")
+    print(f"{EACH} over {TOGETHER}: {found[EACH] / found[TOGETHER]:.2f}")
 
 
 if __name__ == "__main__":

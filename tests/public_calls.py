@@ -46,6 +46,7 @@ NOT_CALLED = {
     "Distances": "made by distances",
     "ServoReport": "made by servos",
     "TrackerState": "made by trackers, which check the states that they are given",
+    "TrackerStates": "made by trackers, which check the states that they are given",
 }
 """Public names with parameters that are not tried, and why."""
 

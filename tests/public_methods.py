@@ -26,6 +26,7 @@ def method_calls() -> list[Call]:
     stacked = np.stack([HOME, HOME])
     flat = np.tile(np.append(np.eye(3).ravel(), [3.0, 0.0, 0.0]), (2, 1))
     rows = {"poses_a": stacked, "poses_b": flat, "twists_a": np.ones((2, 6))}
+    several = TRACKER.start_many(stacked, flat)
     one = {"twists_b": (np.array(TWIST.v), np.array(TWIST.omega))}
     placed = {
         "pose_a": HOME,
@@ -48,6 +49,8 @@ def method_calls() -> list[Call]:
         (TRACKER.step, {"state": state, **moved, "dt": 1e-3}),
         (TRACKER.run, {"state": state, **rows, "dt": np.full(2, 1e-3)}),
         (TRACKER.run, {"state": state, **rows, **one}),
+        (TRACKER.start_many, {**rows, **one}),
+        (TRACKER.step_many, {"states": several, **rows, **one, "dt": np.full(2, 1e-3)}),
         (so.distances, {"a": SPHERE, "b": BOX, "poses_a": stacked, "poses_b": flat}),
         (so.distances, {"a": SPHERE, "b": BOX, "poses_a": np.eye(4).tolist(), "poses_b": AWAY}),
         (TRACKER.start_from, placed),

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from standoff.tracking.frame_buffer import FrameBuffer
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
     from standoff.tracking.many_distances import Distances, distances
+    from standoff.tracking.many_states import TrackerStates
     from standoff.tracking.pair_plot import plot
     from standoff.tracking.pair_system import PairSystem, pair_system
     from standoff.tracking.proximity import Counts, Event, Proximity
-    from standoff.tracking.many_states import TrackerStates
     from standoff.tracking.state import TrackerState
     from standoff.tracking.status import Status
     from standoff.tracking.tracker import Tracker

@@ -35,12 +35,22 @@ class TrackerStates(KeepsReadOnly):
 
     ``states[k]`` is one `TrackerState`, and `TrackerStates.of` puts some together.
 
-    Attributes
+    Parameters
     ----------
+    bodies : pair of Body
     blocks : (n, ...) array
-        What their last frames have left, read-only, by ``standoff.kernels.state.arrays``.
+        What their last frames have left, by ``standoff.kernels.state.arrays``.
     polytopes : (n, 510) array
         What a frame in penetration has kept of its proof.
+    repaired : (n,) array of int
+        How many of a row's two poses were repaired when they were read.
+    longer : dict of int to Proximity
+        Rows with more switches than a row of `blocks` holds.
+
+    Attributes
+    ----------
+    blocks, polytopes
+        As given, read-only.
     """
 
     __slots__ = ("_a", "_b", "_longer", "_repaired", "blocks", "polytopes")

@@ -79,7 +79,8 @@ class Frames(NamedTuple):
         """The same for n frames, where it is of one."""
         if len(self.steps) != 1:
             return self
-        return Frames(*(np.repeat(x, n, axis=0) for x in self))
+        a, b, xi_a, xi_b, h = (_repeated(x, n) for x in self[:5])
+        return Frames(a, b, xi_a, xi_b, h, np.repeat(self.repaired, n))
 
     def mended(self, refused: int, first: int) -> Frames:
         """The same with the rounded poses from frame `first` on repaired and counted: those of the

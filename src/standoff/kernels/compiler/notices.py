@@ -36,7 +36,7 @@ WORK = {
     "frames": Work("single frames", 2, 3, 5),
     "law": Work("frames of the predictor-corrector", 12, 35, 1),
     "smooth": Work("frames on faces of this pair's kinds", 3, 5, 0),
-    "runs": Work("runs of many frames", 1, 2, 1),
+    "runs": Work("runs of many frames", 1, 2, 2),
     "paper": Work("frames of the paper's law", 8, 25, 2),
     "derivatives": Work("derivatives by the poses", 3, 25, 3),
     "patches": Work("patches of bodies", 5, 25, 2),
