@@ -345,8 +345,8 @@ LOOP = so.shapes.planar_loop([so.geometry.ConicArc((0, 0), (1, 0), (0, 1))])
     [
         (
             so.Tracker(BOX, BOX),
-            "a b buffer dt law resolved_law run specialise start start_from start_many step step_into "
-            "step_many",
+            "a b buffer dt law resolved_law run specialise start start_from start_many step "
+            "step_into step_many",
         ),
         (so.PointTracker(LOOP), "body dt law start start_from step"),
         (
