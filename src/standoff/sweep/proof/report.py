@@ -44,6 +44,8 @@ def proof_facts(report: ProofReport, most: int | None = None) -> dict[str, Any]:
     facts = found.facts()
     for name in ("nearest", "counterexamples", "open"):
         facts[name] = _listed(proof, facts[name]["count"], getattr(found, name).places, most)
+    for key in ("count", "all_listed"):
+        del facts["nearest"][key]  # it is one place
     return {
         "format": "standoff sweep proof",
         "version": 1,
