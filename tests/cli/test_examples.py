@@ -19,9 +19,10 @@ Standoff = Callable[..., Any]
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WORLDS = ("fits", "shelves")
 FITS = "fits-allowed"
-SWEEP = "sweep"
+SWEEP, WORKSPACE = "sweep", "workspace"
+JOBS = (SWEEP, WORKSPACE)
 SCENES = [
-    file for file in sorted(EXAMPLES.glob("*.toml")) if file.stem not in (*WORLDS, FITS, SWEEP)
+    file for file in sorted(EXAMPLES.glob("*.toml")) if file.stem not in (*WORLDS, FITS, *JOBS)
 ]
 
 
@@ -110,3 +111,11 @@ def test_the_sweep_finds_rows_that_are_too_near(standoff: Standoff, tmp_path: Pa
     assert ended.code == 3
     assert "100 000 of 100 000 rows, 100 %" in ended.out
     assert "100 rows are not proven to be 0.001 m apart" in ended.out
+
+
+def test_some_of_the_workspace_is_proven(standoff: Standoff) -> None:
+    pytest.importorskip("mujoco")
+    file = EXAMPLES / f"{WORKSPACE}.toml"
+    ended = standoff("sweep", file, "--prove", "clearance=0.02", "--estimate", "--json")
+    assert ended.code == 0
+    assert 0.4 < json.loads(ended.out)["proven"] < 0.8
