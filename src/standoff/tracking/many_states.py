@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,9 +23,6 @@ from standoff.tracking.proximity import Proximity
 from standoff.tracking.runs import Frames, frame_told, take_polytope
 from standoff.tracking.state import TrackerState
 from standoff.tracking.threads import in_parts
-
-if TYPE_CHECKING:
-    from standoff.tracking.tracker import Tracker
 
 Array = NDArray[np.float64]
 
@@ -123,7 +120,7 @@ class TrackerStates(KeepsReadOnly):
 
 
 def step_many(
-    tracker: Tracker, states: TrackerStates, given: Frames, workers: int
+    tracker: Any, states: TrackerStates, given: Frames, workers: int
 ) -> tuple[TrackerStates, Answers]:
     """See ``Tracker.step_many``."""
     n = len(states)
@@ -149,7 +146,7 @@ def step_many(
     return found, found.answers
 
 
-def _made(tracker: Tracker, given: Frames, records: Any, workers: int) -> Frames:
+def _made(tracker: Any, given: Frames, records: Any, workers: int) -> Frames:
     """Make all rows that the compiled frame makes; returns what was given, poses repaired where
     many were rounded."""
     n = len(given.steps)
