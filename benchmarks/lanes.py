@@ -1,8 +1,9 @@
-"""``python -m benchmarks.lanes``: cold rows of ellipsoids in lanes, beside the general code.
+"""``python -m benchmarks.lanes``: ellipsoids in lanes, cold rows and frames, beside scalar code.
 
 Times a row of the compiled loops, in turn, medians; the share of the peak of fused multiply-adds
 that was measured in the same run; two threads; and the vector instructions of the machine code.
 Operations are counted by numbers that count, run through the same functions without the compiler.
+Then frames of many states, and of a world of different ellipsoids.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from benchmarks import many_frames
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.tracking.reached import cold_table
@@ -107,18 +109,18 @@ def operations(axes: Any) -> dict[str, float]:
 
 
 ASSEMBLY = r"""
-from standoff.kernels.entries import batch
-batch.starts.prepare()
-print(batch.starts.overloads[batch.starts.signature].library.get_asm_str())
+from standoff.kernels.entries.{} import {} as entry
+entry.prepare()
+print(entry.overloads[entry.signature].library.get_asm_str())
 """
 
 
-def instructions() -> Counter[str]:
-    """Floating-point instructions of the entry's machine code, compiled anew: by width."""
+def instructions(module: str, entry: str) -> Counter[str]:
+    """Floating-point instructions of an entry's machine code, compiled anew: by width."""
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"NUMBA_CACHE_DIR": folder, "STANDOFF_QUIET": "1"}
         done = subprocess.run(
-            [sys.executable, "-c", ASSEMBLY],
+            [sys.executable, "-c", ASSEMBLY.format(module, entry)],
             env=environment, capture_output=True, text=True, check=True,
         )  # fmt: skip
     found: Counter[str] = Counter()
@@ -169,7 +171,10 @@ def main() -> None:
             f"({counted['divide']:.0f} divisions, {counted['root']:.0f} roots), "
             f"{flops / one / (2.0 * fused):.1%} of the peak"
         )
-    print("machine code:", dict(sorted(instructions().items())))
+    print("machine code:", dict(sorted(instructions("batch", "starts").items())))
+    for line in many_frames.told(SHAPES):
+        print(line)
+    print("machine code:", dict(sorted(instructions("tracker", "value_of_each").items())))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Cold rows of two ellipsoids, which are answered in lanes: beside pairs that are exact by
+"""Cold rows and frames of ellipsoids, which are answered in lanes: beside pairs that are exact by
 construction, and beside the general code."""
 
 import numpy as np
@@ -8,10 +8,24 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.kernels.body import layout as L
 from standoff.kernels.lanes.layout import ROWS
-from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS
-from standoff.kernels.state.arrays import OUT_COUNTS
+from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, GENERAL_FRAMES
+from standoff.kernels.state.arrays import (
+    BLOCK_DONE,
+    BLOCK_STATE,
+    DISTANCE,
+    LOWER_BOUND,
+    N_OUT,
+    N_STATE,
+    OUT_COUNTS,
+    OUT_MODE,
+    OUT_Q,
+    STATUS,
+    UPPER_BOUND,
+)
 from standoff.tracking import Status
+from standoff.tracking.many_states import TrackerStates
 
 REST = np.eye(4)
 TOOL, PART = so.shapes.ellipsoid(0.15, 0.3, 0.2), so.shapes.ellipsoid(0.5, 0.8, 0.9)
@@ -151,3 +165,136 @@ def test_a_sphere_of_patches_inside_another_is_left_to_the_general_code():
     found = so.distances(big, small, REST, poses)
     np.testing.assert_allclose(found.distance, [-1.2, -0.7, 0.05], atol=1e-12)
     assert in_lanes(found).tolist() == [False, False, True]
+
+
+# Frames of many states, each of its own bodies and from its own state.
+
+
+def approached(axes_a, axes_b, gaps, rng, way=2e-3):
+    """Twice what `placed` gives, at gaps (2, k): the second a small motion after the first."""
+    k = gaps.shape[1]
+    poses_a, poses_b, n = placed(axes_a, axes_b, gaps[0], rng)
+    later_a, later_b = poses_a.copy(), poses_b.copy()
+    for later in (later_a, later_b):
+        later[:, :3, :3] = (
+            Rotation.from_rotvec(way * rng.normal(size=(k, 3))).as_matrix() @ later[:, :3, :3]
+        )
+    m = n + way * rng.normal(size=(k, 3))
+    m /= np.linalg.norm(m, axis=1, keepdims=True)
+    later_a[:, :3, 3] += way * rng.normal(size=(k, 3))
+    x = later_a[:, :3, 3] + support(axes_a, later_a[:, :3, :3], m)
+    arm = support(axes_b, later_b[:, :3, :3], -m)
+    later_b[:, :3, 3] = x + gaps[1][:, None] * m - arm
+    return (poses_a, poses_b), (later_a, later_b)
+
+
+def by_lanes(answers):
+    """Which frames can have been made in lanes: certified, and by no general frame."""
+    counts = answers.rows[:, OUT_COUNTS:]
+    return (answers.status == Status.CONVERGED) & (counts[:, GENERAL_FRAMES] == 0.0)
+
+
+@settings(max_examples=15)
+@given(AXES, AXES, st.integers(0, 2**32 - 1), st.floats(-1.0, 1.0))
+def test_frames_at_gaps_that_are_exact_by_construction(axes_a, axes_b, seed, decade):
+    rng = np.random.default_rng(seed)
+    a, b = so.shapes.ellipsoid(*axes_a), so.shapes.ellipsoid(*axes_b)
+    gaps = 10.0**decade * rng.uniform(0.5, 1.0, size=ROWS + 5) * np.array([[1.0], [1.01]])
+    first, second = approached(np.array(axes_a), np.array(axes_b), gaps, rng)
+    tracker = so.Tracker(a, b)
+    _, answers = tracker.step_many(tracker.start_many(*first), *second)
+    roundoff = 1e-14 * (a.size + b.size + gaps[1] + 2.0)
+    assert (answers.status == Status.CONVERGED).all()
+    assert (abs(answers.distance - gaps[1]) <= roundoff).all()
+    assert (answers.lower_bound <= gaps[1] + roundoff).all()
+
+
+def step_by_step(tracker, states, poses_a, poses_b, **given):
+    return [
+        tracker.step(states[k], poses_a[k], poses_b[k], **{x: y[k] for x, y in given.items()})
+        for k in range(len(states))
+    ]
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.05])
+@pytest.mark.parametrize("twists", [False, True])
+def test_frames_in_lanes_are_those_of_step(rng, rounding, twists):
+    """To 1e-13 where they are in lanes, elsewhere to the last bit: answers, counts and states."""
+    a = so.shapes.ellipsoid(0.5, 0.8, 0.9, rounding=rounding)
+    tracker, n = so.Tracker(a, TOOL), 3 * ROWS + 11
+    gaps = rng.uniform(-0.02, 1.5, size=n) + rng.uniform(-2e-3, 2e-3, size=(2, n))
+    first, second = approached(np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2]), gaps, rng)
+    states = tracker.start_many(*first)
+    given = {"twist_a": rng.normal(size=(n, 6)), "twist_b": rng.normal(size=(n, 6))}
+    both = {"twists_a": given["twist_a"], "twists_b": given["twist_b"]} if twists else {}
+    found, answers = tracker.step_many(states, *second, **both)
+    alone = step_by_step(tracker, states, *second, **(given if twists else {}))
+    rows = np.array([answer._out[:N_OUT] for _, answer in alone])
+    kept = np.array([state.warm_start[:N_STATE] for state, _ in alone])
+    lanes = by_lanes(answers)
+    assert 0.6 < lanes.mean() < 1.0
+    size = a.size + TOOL.size
+    ours = found.blocks[:, BLOCK_STATE : BLOCK_STATE + N_STATE]
+    for one, other in ((answers.rows, rows), (ours, kept)):
+        np.testing.assert_array_equal(one[~lanes], other[~lanes])
+        np.testing.assert_allclose(one[lanes], other[lanes], rtol=1e-9, atol=1e-9)
+    bounds = [DISTANCE, LOWER_BOUND, UPPER_BOUND]
+    np.testing.assert_allclose(answers.rows[:, bounds], rows[:, bounds], rtol=0, atol=1e-13 * size)
+    exact = [*range(OUT_MODE, OUT_Q), STATUS, *range(OUT_COUNTS, N_OUT)]
+    np.testing.assert_array_equal(answers.rows[:, exact], rows[:, exact])
+
+
+def test_a_frame_does_not_depend_on_its_neighbours(rng):
+    tracker, n = so.Tracker(PART, TOOL), 2 * ROWS + 9
+    gaps = rng.uniform(-0.02, 1.5, size=n) + rng.uniform(-2e-3, 2e-3, size=(2, n))
+    first, second = approached(np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2]), gaps, rng)
+    states = tracker.start_many(*first)
+    found, _ = tracker.step_many(states, *second)
+    order = rng.permutation(n)
+    shuffled = TrackerStates.of([states[k] for k in order])
+    again, _ = tracker.step_many(shuffled, *(x[order] for x in second), workers=3)
+    assert found.blocks[order][:, :BLOCK_DONE].tobytes() == again.blocks[:, :BLOCK_DONE].tobytes()
+    for k in (0, ROWS, n - 1):
+        one, _ = tracker.step_many(TrackerStates.of([states[k]]), *(x[k] for x in second))
+        assert one.blocks[0, :BLOCK_DONE].tobytes() == found.blocks[k, :BLOCK_DONE].tobytes()
+
+
+def test_other_frames_among_them(rng):
+    """Of a lens, whose rim is an edge: what is in lanes is proven beside `step`."""
+    lens, n = so.shapes.lens(radius=1.0, offset=0.45), 150
+    tracker, poses = so.Tracker(lens, TOOL), turned(rng, n)
+    poses[:, :3, 3] = rng.normal(size=(n, 3))
+    poses[:, :3, 3] *= 1.6 / np.linalg.norm(poses[:, :3, 3], axis=1, keepdims=True)
+    states, later = tracker.start_many(REST, poses), poses.copy()
+    later[:, :3, 3] += 5e-3 * rng.normal(size=(n, 3))
+    _, answers = tracker.step_many(states, REST, later)
+    rows = np.array([tracker.step(states[k], REST, later[k])[1]._out[:N_OUT] for k in range(n)])
+    lanes = by_lanes(answers) & (answers.rows[:, OUT_MODE] < lens.ints[L.N_FACES])
+    assert 0.3 < lanes.mean() < 0.9
+    np.testing.assert_array_equal(answers.rows[~lanes], rows[~lanes])
+    bounds = [DISTANCE, LOWER_BOUND, UPPER_BOUND]
+    np.testing.assert_allclose(answers.rows[:, bounds], rows[:, bounds], rtol=0, atol=3e-13)
+
+
+def test_a_world_of_different_ellipsoids(rng):
+    """Each pair of a frame has bodies of its own; it says what their tracker would."""
+    n, side = 64, 4
+    axes = rng.uniform(0.15, 0.5, size=(n, 3))
+    bodies = {f"b{k}": so.shapes.ellipsoid(*axes[k]) for k in range(n)}
+    poses = turned(rng, n)
+    poses[:, :3, 3] = np.stack(np.meshgrid(*[np.arange(side)] * 3), -1).reshape(-1, 3)
+    world = so.World(bodies, within=0.3, dt=1e-3)
+    later = poses.copy()
+    later[:, :3, 3] += 0.01 * rng.normal(size=(n, 3))
+    begun = world.start(poses)
+    found = [world.step(begun, later, workers=k)[1].pairs for k in (1, 3)]
+    assert found[0].distance.tobytes() == found[1].distance.tobytes()
+    pairs, told = found[0], 0
+    for k, (i, j) in enumerate(pairs.bodies.tolist()):
+        tracker = so.Tracker(bodies[f"b{i}"], bodies[f"b{j}"], dt=1e-3)
+        _, one = tracker.step(tracker.start(poses[i], poses[j]), later[i], later[j])
+        assert pairs.status[k] == one.status
+        assert abs(pairs.distance[k] - one.distance) <= 1e-13
+        assert abs(pairs.lower_bound[k] - one.lower_bound) <= 1e-13
+        told += one.status is Status.CONVERGED
+    assert told > 30

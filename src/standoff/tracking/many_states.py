@@ -130,7 +130,8 @@ def step_many(
             "states: give one of each for every state, or one for all.",
             "poses_a",
         )
-    blocks, polytopes = np.empty((n, K.N_BLOCK)), np.empty((n, N_POLYTOPE))
+    # of polytopes of 0 no memory is touched
+    blocks, polytopes = np.empty((n, K.N_BLOCK)), np.zeros((n, N_POLYTOPE))
     records = states.blocks, states.polytopes, blocks, polytopes
     given = _made(tracker, given, records, whole_number(workers, "workers"))
     longer: dict[int, Proximity] = {}

@@ -2,15 +2,27 @@
 in a row; one call of a frame behind all of them (`frames.frame`).
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from numba import types
 
-from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer, reals_on_stack
+from standoff.kernels.compiler.decorators import (
+    ahead,
+    entry,
+    ints_at,
+    kernel,
+    pointer,
+    reals_on_stack,
+    small,
+)
 from standoff.kernels.compiler.entry import BLOCKS, INT, READ, READ_ROWS, REAL, ROWS, WRITE
 from standoff.kernels.entries.blocks import (
+    N_TABLE,
     Given,
     Polytopes,
     answered,
+    answered_by,
     answered_in_place,
     copied,
     fit,
@@ -18,9 +30,12 @@ from standoff.kernels.entries.blocks import (
     read_given,
     read_poses,
     started,
+    tabled_options,
+    tabled_pair,
     where_kept,
 )
 from standoff.kernels.frame.restart import anywhere, anywhere_apart
+from standoff.kernels.lanes.frames import frames_in_lanes
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
     BAD_ARRAYS,
@@ -187,13 +202,67 @@ def values(table, poses_a, poses_b, twists_a, twists_b, steps, first, records):
     return n, FINE
 
 
+class Many(NamedTuple):
+    """What frames of many states read and write; pointers to rows."""
+
+    pair: Any
+    options: Any
+    poses: Any  # of A, of B: 16 numbers each
+    twists: Any  # of A, of B, and how many numbers each
+    steps: Any
+    records: Any  # old blocks and polytopes, new ones
+
+
+@kernel
+def given_row(many, k):
+    """Poses and twists of row k."""
+    way_a, way_b, of_a, of_b = many.twists
+    twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
+    has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
+    at_a, at_b = ahead(many.poses[0], 16 * k), ahead(many.poses[1], 16 * k)
+    return Given(at_a, at_b, twist_a, twist_b, has_a, has_b)
+
+
+@small
+def frame_of_row(many, k):
+    """(pair, options, block) of row k."""
+    return many.pair, many.options, ahead(many.records[2], N_BLOCK * k)
+
+
+@small
+def begin_row(many, k):
+    """Make the block of row k ready: what is given, and the state before. Are there poses?"""
+    block = ahead(many.records[2], N_BLOCK * k)
+    block[BLOCK_POLYTOPE] = 0.0
+    if not copied(given_row(many, k), many.steps[k], block):
+        block[BLOCK_DONE] = BAD_ARRAYS
+        return False
+    before = ahead(many.records[0], N_BLOCK * k)
+    for i in range(N_STATE):
+        block[BLOCK_STATE + i] = before[BLOCK_STATE + i]
+    block[BLOCK_DONE] = FINE
+    return True
+
+
+@small
+def end_row(many, k, good):
+    """Answer row k by itself where it is not, and was begun."""
+    if good:
+        return
+    block = ahead(many.records[2], N_BLOCK * k)
+    if block[BLOCK_DONE] == FINE:
+        last, own = ahead(many.records[1], N_POLYTOPE * k), ahead(many.records[3], N_POLYTOPE * k)
+        turns = Polytopes(last, own)
+        block[BLOCK_DONE] = answered_by(many.pair, many.options, block, N_BLOCK, turns)
+
+
 @entry(INT, BLOCKS, BLOCKS, ROWS, ROWS, WRITE, PART, MANY_RECORDS, work="runs")
 def value_of_each(table, poses_a, poses_b, twists_a, twists_b, steps, part, records):
     """`value` of many states, one frame each: row k goes from its old block to its new one.
 
     Arrays as of `values`. `records` are old and new blocks (n, N_BLOCK), each followed by its
-    polytopes (n, N_POLYTOPE). Makes rows part[0] .. part[1] - 1; the BLOCK_DONE of a new block says
-    what came of it.
+    polytopes (n, N_POLYTOPE), the new ones 0. Makes rows part[0] .. part[1] - 1; the BLOCK_DONE of
+    a new block says what came of it.
     """
     old, old_kept, new, new_kept = records
     n, of_a, of_b = len(steps), twists_a.shape[1], twists_b.shape[1]
@@ -203,21 +272,19 @@ def value_of_each(table, poses_a, poses_b, twists_a, twists_b, steps, part, reco
     kept = old_kept.shape == (n, N_POLYTOPE) and new_kept.shape == (n, N_POLYTOPE)
     if not (square and rows and alike and kept and part[0] >= 0 and part[1] <= n):
         return BAD_ARRAYS
-    at_a, at_b = pointer(poses_a, 0), pointer(poses_b, 0)
-    way_a, way_b = pointer(twists_a, 0), pointer(twists_b, 0)
+    given = Many(
+        tabled_pair(ints_at(table, N_TABLE)),
+        tabled_options(ints_at(table, N_TABLE)),
+        (pointer(poses_a, 0), pointer(poses_b, 0)),
+        (pointer(twists_a, 0), pointer(twists_b, 0), of_a, of_b),
+        pointer(steps, 0),
+        (pointer(old, 0), pointer(old_kept, 0), pointer(new, 0), pointer(new_kept, 0)),
+    )
     for k in range(part[0], part[1]):
-        twist_a, twist_b = ahead(way_a, of_a * k), ahead(way_b, of_b * k)
-        has_a, has_b = is_given(twist_a, of_a), is_given(twist_b, of_b)
-        if not fit(of_a, has_a, of_b, has_b):
+        one = given_row(given, k)
+        if not fit(of_a, one.has_a, of_b, one.has_b):
             return BAD_ARRAYS
-        one = Given(ahead(at_a, 16 * k), ahead(at_b, 16 * k), twist_a, twist_b, has_a, has_b)
-        before = ahead(pointer(old, 0), N_BLOCK * k)
-        block = ahead(pointer(new, 0), N_BLOCK * k)
-        block[BLOCK_POLYTOPE] = 0.0
-        last = ahead(pointer(old_kept, 0), N_POLYTOPE * k)
-        own = ahead(pointer(new_kept, 0), N_POLYTOPE * k)
-        done = value_at(table, before, one, steps[k], block, Polytopes(last, own))
-        block[BLOCK_DONE] = done
+    frames_in_lanes(begin_row, frame_of_row, end_row, given, part[0], part[1])
     return FINE
 
 

@@ -14,6 +14,7 @@ from standoff.kernels.compiler.decorators import (
     reals_at,
     reals_on_stack,
     shared,
+    small,
 )
 from standoff.kernels.compiler.entry import (
     INT,
@@ -34,6 +35,7 @@ from standoff.kernels.entries.world import (
     pieces_at,
 )
 from standoff.kernels.frame.restart import anywhere
+from standoff.kernels.lanes.frames import frames_in_lanes
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE, N_VERTICES
 from standoff.kernels.state.arrays import (
     BLOCK_EVENTS,
@@ -142,21 +144,6 @@ def answer_anew(pair, options, block):
 
 
 @kernel
-def answer_next(pair, options, old, block, polytopes):
-    """A frame of a pair from the state in another block. Of more switches than a block holds the
-    first are kept, and counted are all."""
-    long = reals_on_stack(N_LONG_BLOCK)
-    for k in range(BLOCK_STATE, BLOCK_EVENTS):
-        long[k] = block[k]
-    for k in range(N_STATE):
-        long[BLOCK_STATE + k] = old[BLOCK_STATE + k]
-    done = answered_by(pair, options, long, N_LONG_BLOCK, polytopes)
-    for k in range(N_BLOCK):
-        block[k] = long[k]
-    return done
-
-
-@kernel
 def composed(pieces, p):
     """What roundoff of a placement may have moved a piece by (length)."""
     placed = pieces.facts[N_FACT * p + F_PLACED] != 0.0
@@ -189,32 +176,87 @@ PART = types.UniTuple(INT, 2)
 
 
 @kernel
-def answer_one(bodies, pieces, pairs, asked, h, twists):
-    """The answer of one pair; FINE, or what is refused."""
-    twist, has_twist = twists
-    at = asked[A_PAIR]
-    ints, known = ahead(pairs.ints, N_INTS * at), ahead(pairs.known, N_KNOWN * at)
-    p, q = ints[I_A], ints[I_B]
-    pair, options = pair_of(bodies, p, q), options_of(bodies, p, q)
-    block = reals_at(asked[A_OWN], N_BLOCK)
-    put_motion(pieces, p, q, twist, has_twist != 0, block)
-    block[BLOCK_TIME_STEP] = h
-    if asked[A_OLD] == 0:
-        done = answer_anew(pair, options, block)
-    else:
-        scratch = reals_on_stack(N_POLYTOPE)
-        scratch[N_VERTICES] = 0.0
-        last = (
-            reals_at(asked[A_LAST_POLYTOPE], N_POLYTOPE) if asked[A_LAST_POLYTOPE] != 0 else scratch
-        )
-        own = reals_at(asked[A_POLYTOPE], N_POLYTOPE) if asked[A_POLYTOPE] != 0 else scratch
-        block[BLOCK_POLYTOPE] = N_BLOCK if asked[A_POLYTOPE] != 0 else 0.0
-        old = reals_at(asked[A_OLD], N_BLOCK)
-        done = answer_next(pair, options, old, block, Polytopes(last, own))
-        block[BLOCK_POLYTOPE] = 0.0
-    if done == FINE:
-        note(pieces, known, ints, block)
+def answer_next(pair, options, block, asked):
+    """A frame of a pair from the state in its block. Of more switches than a block holds the first
+    are kept, and counted are all."""
+    scratch = reals_on_stack(N_POLYTOPE)
+    scratch[N_VERTICES] = 0.0
+    before, kept = asked[A_LAST_POLYTOPE], asked[A_POLYTOPE]
+    last = reals_at(before, N_POLYTOPE) if before != 0 else scratch
+    own = reals_at(kept, N_POLYTOPE) if kept != 0 else scratch
+    long = reals_on_stack(N_LONG_BLOCK)
+    for k in range(BLOCK_STATE, BLOCK_EVENTS):
+        long[k] = block[k]
+    long[BLOCK_POLYTOPE] = N_BLOCK if kept != 0 else 0.0
+    done = answered_by(pair, options, long, N_LONG_BLOCK, Polytopes(last, own))
+    for k in range(N_BLOCK):
+        block[k] = long[k]
+    block[BLOCK_POLYTOPE] = 0.0
     return done
+
+
+class Answering(NamedTuple):
+    """What the answers of pairs read and write, in one frame of a world."""
+
+    bodies: Any
+    pieces: Any
+    pairs: Any
+    asked: Any  # pointer to rows: A_PAIR ...
+    steps: Any  # pointer, s
+    twists: Any  # pointer to rows
+    has_twist: bool
+    done: Any  # pointer
+
+
+@small
+def asked_of(answering, k):
+    """(what is asked, pieces) of row k."""
+    asked = ahead(answering.asked, 5 * k)
+    ints = ahead(answering.pairs.ints, N_INTS * asked[A_PAIR])
+    return asked, ints[I_A], ints[I_B]
+
+
+@kernel
+def frame_of_asked(answering, k):
+    """(pair, options, block) of row k."""
+    asked, p, q = asked_of(answering, k)
+    pair, options = pair_of(answering.bodies, p, q), options_of(answering.bodies, p, q)
+    return pair, options, reals_at(asked[A_OWN], N_BLOCK)
+
+
+@kernel
+def begin_asked(answering, k):
+    """Make the block of row k ready: what is given, and the state before. Is there one?"""
+    asked, p, q = asked_of(answering, k)
+    block = reals_at(asked[A_OWN], N_BLOCK)
+    put_motion(answering.pieces, p, q, answering.twists, answering.has_twist, block)
+    block[BLOCK_TIME_STEP], block[BLOCK_POLYTOPE] = answering.steps[k], 0.0
+    if asked[A_OLD] == 0:
+        return False
+    old = reals_at(asked[A_OLD], N_BLOCK)
+    for i in range(N_STATE):
+        block[BLOCK_STATE + i] = old[BLOCK_STATE + i]
+    return True
+
+
+@kernel
+def end_asked(answering, k, good):
+    """Answer row k where it is not, and note what its answer says."""
+    asked, p, q = asked_of(answering, k)
+    block, done = reals_at(asked[A_OWN], N_BLOCK), FINE
+    if not good:
+        pair, options = pair_of(answering.bodies, p, q), options_of(answering.bodies, p, q)
+        if asked[A_OLD] == 0:
+            done = answer_anew(pair, options, block)
+        else:
+            done = answer_next(pair, options, block, asked)
+    elif asked[A_POLYTOPE] != 0:
+        reals_at(asked[A_POLYTOPE], N_POLYTOPE)[N_VERTICES] = 0.0
+    if done == FINE:
+        at = asked[A_PAIR]
+        known, ints = answering.pairs.known, answering.pairs.ints
+        note(answering.pieces, ahead(known, N_KNOWN * at), ahead(ints, N_INTS * at), block)
+    answering.done[k] = done
 
 
 @entry(BODIES, PIECES, PLACED, PAIRS, ASKED, TWISTS, PART, WRITE_INTS, work="world")
@@ -222,11 +264,15 @@ def answer(bodies, fixed, frame, table, asked, twists, part, done):
     """The answers of the pairs asked from part[0] to part[1] - 1, each into its own block; the
     table of pairs is brought up to date. done[k] is FINE, or what is refused."""
     addresses, classes, options = bodies
-    read = Bodies(pointer(addresses, 0), pointer(classes, 0), pointer(options, 0), options.shape[0])
-    pieces, pairs = pieces_at(fixed, frame), pairs_at(table, len(table[0]))
-    numbers, steps = asked
-    twist = (pointer(twists[0], 0), twists[1])
-    for k in range(part[0], part[1]):
-        one = pointer(numbers, 5 * k)
-        done[k] = answer_one(read, pieces, pairs, one, steps[k], twist)
+    answering = Answering(
+        Bodies(pointer(addresses, 0), pointer(classes, 0), pointer(options, 0), options.shape[0]),
+        pieces_at(fixed, frame),
+        pairs_at(table, len(table[0])),
+        pointer(asked[0], 0),
+        pointer(asked[1], 0),
+        pointer(twists[0], 0),
+        twists[1] != 0,
+        pointer(done, 0),
+    )
+    frames_in_lanes(begin_asked, frame_of_asked, end_asked, answering, part[0], part[1])
     return 0

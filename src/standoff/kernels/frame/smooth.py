@@ -29,7 +29,14 @@ from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.answer import judge, write_answer
 from standoff.kernels.frame.inputs import moving
 from standoff.kernels.frame.prediction import feeds, kept_state, predict
-from standoff.kernels.pair.certificate import ARC, SINGLE, Cones, NormalCone, certify_cones
+from standoff.kernels.pair.certificate import (
+    ARC,
+    SINGLE,
+    Cones,
+    NormalCone,
+    certify_cones,
+    nearest_normal,
+)
 from standoff.kernels.pair.certified import CERTIFIED, outcome_of
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.pair.newton import (
@@ -90,6 +97,25 @@ class Looked(NamedTuple):
     jets: Any  # in A's frame
     cones: Any  # input of the certificate
     ways: Any  # of both, in their bodies' frames
+
+
+class Slope(NamedTuple):
+    """How steep the distance is."""
+
+    d: float  # of the points
+    span: float  # by which roundoff is measured, length
+    g: Any  # of E
+    metrics: Any
+    slope: float  # in the metric: length
+
+
+class Correction(NamedTuple):
+    """A step of the law."""
+
+    sound: bool  # are the points apart, and the minimum one?
+    step: Any  # of the parameters
+    rates: Any  # their feedforward, 1/s
+    enough: float  # E behind the step must not be greater
 
 
 NOT_SEEN = Seen(False, NO_JET, NO_CONE, (ORIGIN, ORIGIN))
@@ -221,31 +247,53 @@ def both_held(dims, pose, looked, d, span, slope):
 
 
 @small
+def slope_at(pair, pose, jets):
+    """How steep the distance is between two points, by their jets."""
+    jet_a, jet_b = jets
+    d = norm(sub(jet_b[0], jet_a[0]))
+    g = gradient(projection_errors(jet_a, jet_b))
+    metrics = pair_metric(jet_a, jet_b)
+    return Slope(d, pair_span(pair, pose.p, d), g, metrics, metric_norm(metrics, g))
+
+
+@small
+def at_rest(at, tolerance):
+    """Is a slope as good as zero?"""
+    return at.slope <= max(AT_REST * EPS * at.span, tolerance * at.d)
+
+
+@small
+def correction_at(motion, jets, at):
+    """The law's step from there, with the gain of one step: Eq. (12)."""
+    jet_a, jet_b = jets
+    H = hessian(jet_a, jet_b)
+    factors = ldl(H)
+    safe, _ = plainly_definite(at.metrics, H, factors[0])
+    b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
+    g = at.g
+    step, rates = negate(ldl_solve(factors, g)), negate(ldl_solve(factors, gradient(b)))
+    descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
+    enough = 0.5 * at.d * at.d + ARMIJO * descent + ENERGY_NOISE * EPS * at.span * at.d
+    sound = at.d > TOUCHING * at.span and at.slope > 0.0 and safe
+    return Correction(sound, step, rates, enough)
+
+
+@small
 def descended(look_a, look_b, dims, pair, motion, place, tolerance, most):
     """(done, corrections, place, looked, rates): `settle` of a pair that no boundary concerns."""
     pose, corrections, rates = motion.pose, 0, NO_RATES
     looked = look(look_a, look_b, pair, pose, place)
     done = looked.fits
     while done:
-        jet_a, jet_b = looked.jets
-        d = norm(looked.cones.gap)
-        span = pair_span(pair, pose.p, d)
-        g = gradient(projection_errors(jet_a, jet_b))
-        metrics = pair_metric(jet_a, jet_b)
-        slope = metric_norm(metrics, g)
-        if corrections > 0 and slope <= max(AT_REST * EPS * span, tolerance * d):
-            done = both_held(dims, pose, looked, d, span, slope)
+        at = slope_at(pair, pose, looked.jets)
+        if corrections > 0 and at_rest(at, tolerance):
+            done = both_held(dims, pose, looked, at.d, at.span, at.slope)
             break
-        H = hessian(jet_a, jet_b)
-        factors = ldl(H)
-        safe, _ = plainly_definite(metrics, H, factors[0])
-        done = d > TOUCHING * span and slope > 0.0 and safe and corrections < most
+        sound, step, new_rates, enough = correction_at(motion, looked.jets, at)
+        done = sound and corrections < most
         if not done:
             break
-        b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
-        step, rates = negate(ldl_solve(factors, g)), negate(ldl_solve(factors, gradient(b)))
-        descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-        enough = 0.5 * d * d + ARMIJO * descent + ENERGY_NOISE * EPS * span * d
+        rates = new_rates
         place = moved(place, 1.0, step)
         looked = look(look_a, look_b, pair, pose, place)
         corrections += 1
@@ -275,7 +323,7 @@ def smooth_frame(look_a, look_b, dims, call, h):
     look_a and look_b see A's charts and B's as of one kind, or edges where `dims` says so. `call`
     is what a frame is called with, its work not asked.
     """
-    pair, inputs, options, state, out, _ = call
+    pair, inputs, options, state, _, _ = call
     before = read_state(state)
     if not may_be_smooth(dims, pair, before):
         return 0
@@ -291,14 +339,23 @@ def smooth_frame(look_a, look_b, dims, call, h):
     if not done:
         return 0
     cones = known_cones(dims, looked.cones)
-    d, lower, normal, blur = certify_cones(pair, pose, place, cones, ORIGIN)
+    d, lower, normal, blur = certify_cones(nearest_normal, pair, pose, place, cones, ORIGIN)
     outcome = outcome_of(pair, pose, d, lower, blur, options.tolerance)
     if outcome != CERTIFIED or d <= POLISHED * contact_scale(pair):
         return 0
     found = Found(outcome, place, d, lower, d, normal)
-    status = judge(pair, pose.p, found, False, options.tolerance, False)
-    known = Tracked(Shown(found, looked.jets, False, True, rates), before.integrated)
-    write_answer(pair, inputs, motion, known.shown, ORIGIN, status, out)
+    finish(call, h, before, motion, Shown(found, looked.jets, False, True, rates), corrections)
+    return 1
+
+
+@small
+def finish(call, h, before, motion, shown, corrections):
+    """Write the answer and the next state of a frame that is proven; of the jets no more is read
+    than points and tangents."""
+    pair, inputs, options, state, out, _ = call
+    status = judge(pair, motion.pose.p, shown.found, False, options.tolerance, False)
+    known = Tracked(shown, before.integrated)
+    write_answer(pair, inputs, motion, shown, ORIGIN, status, out)
     feed = feeds(options.predictor, inputs.has_twist)
     carried = True, before.place, before.rates
     write_state(kept_state(carried, before, motion, h, known, feed, status), state)
@@ -306,4 +363,3 @@ def smooth_frame(look_a, look_b, dims, call, h):
         out[OUT_COUNTS + k] = 0.0
     out[OUT_COUNTS + EVALUATIONS] = corrections
     out[OUT_COUNTS + CORRECTIONS] = corrections
-    return 1

@@ -268,15 +268,21 @@ def cones_at(pair, pose, place, jets):
 
 
 @small
-def nearest_of_a(pair, place, cones, n):
-    """`nearest_normal` of A."""
-    return nearest_normal(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
+def only_normal(ints, reals, feature, cone, n):
+    """`nearest_normal` of a cone of one normal, which asks the body nothing."""
+    return cone.first, cone.noise
 
 
 @small
-def nearest_of_b(pair, place, cones, m):
-    """`nearest_normal` of B, in B's frame."""
-    return nearest_normal(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
+def nearest_of_a(nearest, pair, place, cones, n):
+    """A's `nearest_normal`, or another function that gives it."""
+    return nearest(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
+
+
+@small
+def nearest_of_b(nearest, pair, place, cones, m):
+    """`nearest_of_a` of B, in B's frame."""
+    return nearest(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
 
 
 @small
@@ -292,17 +298,17 @@ def over_b(pair, cones, e, noise):
 
 
 @small
-def hangs_over_a(pair, place, cones, n):
+def hangs_over_a(nearest, pair, place, cones, n):
     """(what hangs over A's side of the plane square to n, what roundoff may add)."""
-    cone, miss = nearest_of_a(pair, place, cones, n)
+    cone, miss = nearest_of_a(nearest, pair, place, cones, n)
     return over_a(pair, cones, sub(n, cone), miss), over_a(pair, cones, ZERO, miss)
 
 
 @small
-def hangs_over_b(pair, pose, place, cones, n):
+def hangs_over_b(nearest, pair, pose, place, cones, n):
     """`hangs_over_a` of B."""
     m = into_b(pose.R, n)
-    cone, miss = nearest_of_b(pair, place, cones, m)
+    cone, miss = nearest_of_b(nearest, pair, place, cones, m)
     return over_b(pair, cones, sub(m, cone), miss), over_b(pair, cones, ZERO, miss)
 
 
@@ -335,11 +341,11 @@ def certify_along(pair, pose, place, jets, n):
     cones = cones_at(pair, pose, place, jets)
     bound, blur = dot(n, cones.gap), 0.0
     if not pair.ints_a[L.UNBOUNDED]:
-        hangs, miss = hangs_over_a(pair, place, cones, n)
+        hangs, miss = hangs_over_a(nearest_normal, pair, place, cones, n)
         bound -= hangs
         blur += miss
     if not pair.ints_b[L.UNBOUNDED]:
-        hangs, miss = hangs_over_b(pair, pose, place, cones, n)
+        hangs, miss = hangs_over_b(nearest_normal, pair, pose, place, cones, n)
         bound -= hangs
         blur += miss
     return lowered(pair, pose, cones, bound), blur
@@ -355,37 +361,40 @@ def certify(pair, pose, place, jets, hint):
     -n_B, the direction of x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest
     bound: near contact the direction loses its digits.
     """
-    return certify_cones(pair, pose, place, cones_at(pair, pose, place, jets), hint)
+    return certify_cones(nearest_normal, pair, pose, place, cones_at(pair, pose, place, jets), hint)
 
 
 @small
-def certify_cones(pair, pose, place, cones, hint):
-    """`certify`, by the normal cones at the witness points."""
+def certify_cones(nearest, pair, pose, place, cones, hint):
+    """`certify`, by the normal cones at the witness points; `nearest` as `nearest_normal`.
+
+    By `only_normal` it reads no more of the bodies than the headers of their arrays.
+    """
     gap = cones.gap
     d = norm(gap)
     # bodies that may overlap are bounded by unit vectors only: by any, where points coincide
     direction = scale(1.0 / d, gap) if d > COINCIDENT else ANY_DIRECTION
     m_b = into_b(pose.R, direction)
-    n_a, noise_a = nearest_of_a(pair, place, cones, direction)
-    n_b, noise_b = nearest_of_b(pair, place, cones, m_b)
+    n_a, noise_a = nearest_of_a(nearest, pair, place, cones, direction)
+    n_b, noise_b = nearest_of_b(nearest, pair, place, cones, m_b)
     hangs_a = over_a(pair, cones, sub(direction, n_a), noise_a)
     hangs_b = over_b(pair, cones, sub(m_b, n_b), noise_b)
     blur_a, blur_b = over_a(pair, cones, ZERO, noise_a), over_b(pair, cones, ZERO, noise_b)
     along = d if d > COINCIDENT else dot(direction, gap)
     best, normal = along - hangs_a - hangs_b, direction
     if dot(hint, hint) > 0.5:
-        bound = dot(hint, gap) - hangs_over_a(pair, place, cones, hint)[0]
-        bound -= hangs_over_b(pair, pose, place, cones, hint)[0]
+        bound = dot(hint, gap) - hangs_over_a(nearest, pair, place, cones, hint)[0]
+        bound -= hangs_over_b(nearest, pair, pose, place, cones, hint)[0]
         if bound > best:
             best, normal = bound, hint
     # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
     if dot(n_a, n_a) > 0.5:
-        bound = dot(n_a, gap) - hangs_over_b(pair, pose, place, cones, n_a)[0] - blur_a
+        bound = dot(n_a, gap) - hangs_over_b(nearest, pair, pose, place, cones, n_a)[0] - blur_a
         if bound > best:
             best, normal = bound, n_a
     if dot(n_b, n_b) > 0.5:
         n = scale(-1.0, rotate(pose.R, n_b))
-        bound = dot(n, gap) - hangs_over_a(pair, place, cones, n)[0] - blur_b
+        bound = dot(n, gap) - hangs_over_a(nearest, pair, place, cones, n)[0] - blur_b
         if bound > best:
             best, normal = bound, n
     return d, lowered(pair, pose, cones, best), normal, blur_a + blur_b

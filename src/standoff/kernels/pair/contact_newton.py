@@ -18,6 +18,7 @@ from standoff.kernels.pair.certificate import (
     CIRCLE,
     cones_at,
     into_b,
+    nearest_normal,
     nearest_of_a,
     nearest_of_b,
 )
@@ -32,8 +33,8 @@ from standoff.kernels.values import STILL, Place, Vector, moved, of_origin, side
 def facing(pair, pose, place, cones, n):
     """How nearly is n a normal of A and -n one of B? 2 where both are."""
     m = into_b(pose.R, n)
-    of_a = dot(n, nearest_of_a(pair, place, cones, n)[0])
-    return of_a + dot(m, nearest_of_b(pair, place, cones, m)[0])
+    of_a = dot(n, nearest_of_a(nearest_normal, pair, place, cones, n)[0])
+    return of_a + dot(m, nearest_of_b(nearest_normal, pair, place, cones, m)[0])
 
 
 @kernel
@@ -67,9 +68,13 @@ def common_normal(pair, pose, place, jets):
         cones = cones_at(pair, pose, place, jets)
         return outward(pair, pose, place, cones, unit(perpendicular)), True
     if ia[L.DIMENSION] == 2 and dimension(ia, a.feature) == 1:
-        return nearest_of_a(pair, place, cones_at(pair, pose, place, jets), unit(gap))[0], True
+        return nearest_of_a(
+            nearest_normal, pair, place, cones_at(pair, pose, place, jets), unit(gap)
+        )[0], True
     if ib[L.DIMENSION] == 2 and dimension(ib, b.feature) == 1:
-        m, _ = nearest_of_b(pair, place, cones_at(pair, pose, place, jets), unit(gap))
+        m, _ = nearest_of_b(
+            nearest_normal, pair, place, cones_at(pair, pose, place, jets), unit(gap)
+        )
         return scale(-1.0, rotate(pose.R, m)), True
     return unit(gap), False
 
