@@ -22,7 +22,7 @@ from standoff.kernels.body.features import (
     pair_span,
     plane_conormal,
 )
-from standoff.kernels.body.jets import curve_jet, mapped_jet, surface_jet
+from standoff.kernels.body.jets import curve_jet, mapped_jet, sphere_jet, surface_jet
 from standoff.kernels.body.nurbs import net_at, net_jet_of, unrolled_basis
 from standoff.kernels.body.trimming import well_inside
 from standoff.kernels.compiler.decorators import small
@@ -104,6 +104,16 @@ def seen_as(kind, ints, reals, chart, u, v):
     if ints[c + L.CHART_KIND] != kind:
         return NOT_SEEN
     return seen_by(kind, reals, o, surface_jet(reals, kind, o, u, v))
+
+
+@small
+def seen_as_sphere(ints, reals, chart, u, v):
+    """`seen_as` of patches of ellipsoids, without the jets of all the other kinds."""
+    c = chart_record(ints, chart)
+    o = ints[c + L.CHART_REALS]
+    if ints[c + L.CHART_KIND] != L.SPHERE:
+        return NOT_SEEN
+    return seen_by(L.SPHERE, reals, o, mapped_jet(reals, o, sphere_jet(u, v)))
 
 
 @small
@@ -317,7 +327,7 @@ def known(dimension, cone):
 @small
 def known_cones(dims, cones):
     """`known` of both. A compiler that must find the kinds out itself may not, and then keeps the
-    certificate's cases for vertices: for a GPU that is 200,000 lines in place of 3,000."""
+    certificate's cases for edges at faces too."""
     return Cones(known(dims[0], cones.a), known(dims[1], cones.b), cones.x_a, cones.y_b, cones.gap)
 
 
