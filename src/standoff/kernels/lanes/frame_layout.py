@@ -25,10 +25,10 @@ N_SIDE = (17 + L.REAL_HEADER) * ROWS
 VELOCITY, TURN = 12, 15
 N_MOTION = N_POSE + 6 * ROWS
 
-# A descent: the parameters (4), what it has come to, corrections made, E that must not be exceeded,
-# rates of the parameters (4); then the tolerance, and how many corrections are allowed.
-PHASE, CORRECTIONS, ENOUGH, RATES, TOLERANCE, MOST = 4, 5, 6, 7, 11, 12
-N_DESCENT = 13 * ROWS
+# A descent: the parameters (4), what it has come to, corrections made, what the last was to gain
+# (2), rates of the parameters (4); then the tolerance, and how many corrections are allowed.
+PHASE, CORRECTIONS, ENERGY, FALL, RATES, TOLERANCE, MOST = 4, 5, 6, 7, 8, 12, 13
+N_DESCENT = 14 * ROWS
 
 # What is found: distance and bound of the cores, normal, both points and their tangents.
 D, LOWER, NORMAL, JETS = 0, 1, 2, 5
@@ -54,7 +54,8 @@ class Descent(NamedTuple):
     place: Any  # 4 parameters
     phase: float
     corrections: float
-    enough: float
+    energy: float  # of a `Fall`
+    fall: float  # its descent
     rates: Any  # 1/s
     tolerance: float  # of the gap, in spans
     most: float
@@ -136,7 +137,8 @@ def descent_of(block, row):
         four_of(at, 0, row),
         at[lane(PHASE, row)],
         at[lane(CORRECTIONS, row)],
-        at[lane(ENOUGH, row)],
+        at[lane(ENERGY, row)],
+        at[lane(FALL, row)],
         four_of(at, RATES, row),
         at[lane(TOLERANCE, row)],
         at[lane(MOST, row)],
@@ -148,7 +150,7 @@ def put_descent(descent, block, row):
     at = block.descent
     put_four(descent.place, at, 0, row)
     at[lane(PHASE, row)], at[lane(CORRECTIONS, row)] = descent.phase, descent.corrections
-    at[lane(ENOUGH, row)] = descent.enough
+    at[lane(ENERGY, row)], at[lane(FALL, row)] = descent.energy, descent.fall
     put_four(descent.rates, at, RATES, row)
     at[lane(TOLERANCE, row)], at[lane(MOST, row)] = descent.tolerance, descent.most
 

@@ -7,20 +7,26 @@ answered by itself: inside the lanes nothing exits, a phase says what has come o
 
 from math import inf
 
+from standoff.kernels.algebra.vectors import sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record, has_collapsed, moved_jet
 from standoff.kernels.compiler.decorators import ahead, ints_on_stack, kernel, small
-from standoff.kernels.depth.penetration import contact_scale
+from standoff.kernels.frame.answer import judge
 from standoff.kernels.frame.inputs import inputs_at, moving, refused
 from standoff.kernels.frame.prediction import predict
 from standoff.kernels.frame.record import Called
 from standoff.kernels.frame.smooth import (
     FACES,
+    Fall,
+    Looked,
     at_rest,
-    correction_at,
     finish,
     inside_features,
+    is_enough,
     may_be_smooth,
+    newton_at,
+    proven_apart,
+    rates_at,
     slope_at,
 )
 from standoff.kernels.lanes.frame_layout import (
@@ -47,9 +53,8 @@ from standoff.kernels.lanes.frame_layout import (
 )
 from standoff.kernels.lanes.layout import ROWS, lane, put_vector, twelve_of, vector_of
 from standoff.kernels.lanes.rows import Witness, seen
-from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone, certify_cones, only_normal
-from standoff.kernels.pair.certified import CERTIFIED, outcome_of
-from standoff.kernels.pair.system import energy
+from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone
+from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import (
     BLOCK_HAS_TWIST,
     BLOCK_MOTION,
@@ -59,7 +64,7 @@ from standoff.kernels.state.arrays import (
 )
 from standoff.kernels.state.state import read_state
 from standoff.kernels.state.tracked import Shown
-from standoff.kernels.tolerances import POLISHED, SMOOTH_CORRECTIONS
+from standoff.kernels.tolerances import SMOOTH_CORRECTIONS
 from standoff.kernels.values import NO_RATES, ORIGIN, Found, Place, moved
 
 LEFT, GOING, RESTS = 0.0, 1.0, 2.0
@@ -117,7 +122,7 @@ def put_row(pair, options, block, lanes, row):
     put_motion(moving(call.inputs, before, h), lanes, row)
     at = (place.u, place.v, place.r, place.s)
     most = min(options.deadline, SMOOTH_CORRECTIONS)
-    begun = Descent(at, GOING, 0.0, inf, NO_RATES, options.tolerance, float(most))
+    begun = Descent(at, GOING, 0.0, inf, 0.0, NO_RATES, options.tolerance, float(most))
     put_descent(begun, lanes, row)
     return True
 
@@ -135,23 +140,41 @@ def is_inside(side, p, q, row):
 
 
 @small
-def both_seen(lanes, place, row):
-    """(jet and normal of A, of B, each in its own frame)."""
-    a = seen(witness_of(lanes.a, place[0], place[1], row))
-    return a, seen(witness_of(lanes.b, place[2], place[3], row))
+def looked_at(lanes, place, row):
+    """(both features at a row's place, as `smooth.look` sees them; B's jet in its own frame)."""
+    pose = motion_of(lanes, row).pose
+    jet_a, n_a = seen(witness_of(lanes.a, place[0], place[1], row))
+    own_b, n_b = seen(witness_of(lanes.b, place[2], place[3], row))
+    jet_b = moved_jet(pose, own_b)
+    cones = Cones(
+        NormalCone(SINGLE, n_a, n_a, ORIGIN, 0.0),
+        NormalCone(SINGLE, n_b, n_b, ORIGIN, 0.0),
+        jet_a[0],
+        own_b[0],
+        sub(jet_b[0], jet_a[0]),
+    )
+    return Looked(True, (jet_a, jet_b), cones, ((ORIGIN, ORIGIN), (ORIGIN, ORIGIN))), own_b
 
 
 @small
 def fits(pair, jet_a, own_b, lanes, place, row):
     """Are the points well inside their faces, and the tangents long enough?"""
-    fit_a = (not has_collapsed(pair.reals_a, jet_a[1])) & (
-        not has_collapsed(pair.reals_a, jet_a[2])
+    ra, rb = pair.reals_a, pair.reals_b
+    short_a = has_collapsed(ra, jet_a[1]) | has_collapsed(ra, jet_a[2])
+    short_b = has_collapsed(rb, own_b[1]) | has_collapsed(rb, own_b[2])
+    a, b = is_inside(lanes.a, place[0], place[1], row), is_inside(lanes.b, place[2], place[3], row)
+    return a & b & (not short_a) & (not short_b)
+
+
+@small
+def chosen(first, x, y):
+    """Four numbers, or four others."""
+    return (
+        x[0] if first else y[0],
+        x[1] if first else y[1],
+        x[2] if first else y[2],
+        x[3] if first else y[3],
     )
-    fit_b = (not has_collapsed(pair.reals_b, own_b[1])) & (
-        not has_collapsed(pair.reals_b, own_b[2])
-    )
-    a = is_inside(lanes.a, place[0], place[1], row)
-    return fit_a & fit_b & a & is_inside(lanes.b, place[2], place[3], row)
 
 
 @small
@@ -159,33 +182,22 @@ def followed(lanes, row):
     """A round of `smooth.descended`: the points as they are, and the next correction."""
     last, pair, motion = descent_of(lanes, row), pair_of(lanes, row), motion_of(lanes, row)
     place = last.place
-    (jet_a, _), (own_b, _) = both_seen(lanes, place, row)
-    jets = (jet_a, moved_jet(motion.pose, own_b))
-    at = slope_at(pair, motion.pose, jets)
-    sound = fits(pair, jet_a, own_b, lanes, place, row) & (energy(jets[0], jets[1]) <= last.enough)
-    on = (last.phase == GOING) & sound
+    looked, own_b = looked_at(lanes, place, row)
+    at = slope_at(pair, motion.pose, looked)
+    low = is_enough(Fall(NO_RATES, last.energy, last.fall), 1.0, looked)
+    on = (last.phase == GOING) & fits(pair, looked.jets[0], own_b, lanes, place, row) & low
     rests = on & (last.corrections > 0.0) & at_rest(at, last.tolerance)
-    next = correction_at(motion, jets, at)
-    onward = on & (not rests) & next.sound & (last.corrections < last.most)
-    step, rates, far = next.step, next.rates, 1.0 if onward else 0.0
-    phase = GOING if onward else LEFT
-    phase = RESTS if rests | (last.phase == RESTS) else phase
+    newton = newton_at(looked, at)
+    onward = on & (not rests) & newton.safe & (last.corrections < last.most)
+    fall, step, phase = newton.fall, newton.fall.step, GOING if onward else LEFT
+    there = (place[0] + step[0], place[1] + step[1], place[2] + step[2], place[3] + step[3])
     return Descent(
-        (
-            place[0] + step[0] if onward else place[0],
-            place[1] + step[1] if onward else place[1],
-            place[2] + step[2] if onward else place[2],
-            place[3] + step[3] if onward else place[3],
-        ),
-        phase,
-        last.corrections + far,
-        next.enough if onward else last.enough,
-        (
-            rates[0] if onward else last.rates[0],
-            rates[1] if onward else last.rates[1],
-            rates[2] if onward else last.rates[2],
-            rates[3] if onward else last.rates[3],
-        ),
+        chosen(onward, there, place),
+        RESTS if rests | (last.phase == RESTS) else phase,
+        last.corrections + 1.0 if onward else last.corrections,
+        fall.energy if onward else last.energy,
+        fall.descent if onward else last.fall,
+        chosen(onward, rates_at(motion, looked.jets, newton), last.rates),
         last.tolerance,
         last.most,
     )
@@ -210,21 +222,12 @@ def weigh(lanes):
     """The certificate of every row: those that are not proven are left."""
     for row in range(ROWS):
         last, pair, pose = descent_of(lanes, row), pair_of(lanes, row), motion_of(lanes, row).pose
-        (jet_a, n_a), (own_b, n_b) = both_seen(lanes, last.place, row)
-        jet_b = moved_jet(pose, own_b)
-        cones = Cones(
-            NormalCone(SINGLE, n_a, n_a, ORIGIN, 0.0),
-            NormalCone(SINGLE, n_b, n_b, ORIGIN, 0.0),
-            jet_a[0],
-            own_b[0],
-            (jet_b[0][0] - jet_a[0][0], jet_b[0][1] - jet_a[0][1], jet_b[0][2] - jet_a[0][2]),
-        )
-        d, lower, n, blur = certify_cones(only_normal, pair, pose, ANYWHERE, cones, ORIGIN)
-        outcome = outcome_of(pair, pose, d, lower, blur, last.tolerance)
-        good = (outcome == CERTIFIED) & (d > POLISHED * contact_scale(pair))
-        lanes.found[lane(D, row)], lanes.found[lane(LOWER, row)] = d, lower
-        put_vector(n, lanes.found, NORMAL, row)
-        put_jets(jet_a, jet_b, lanes, row)
+        looked, _ = looked_at(lanes, last.place, row)
+        good, found = proven_apart(FACES, pair, pose, ANYWHERE, looked, last.tolerance)
+        at = lanes.found
+        at[lane(D, row)], at[lane(LOWER, row)] = found.distance, found.lower
+        put_vector(found.normal, at, NORMAL, row)
+        put_jets(looked.jets[0], looked.jets[1], lanes, row)
         lanes.descent[lane(PHASE, row)] = last.phase if good else LEFT
 
 
@@ -241,7 +244,8 @@ def write_row(pair, options, block, lanes, row):
     jets = tangents_of(lanes, JETS, row), tangents_of(lanes, JETS + 9, row)
     shown = Shown(found, jets, False, True, descent.rates)
     h, motion = block[BLOCK_TIME_STEP], motion_of(lanes, row)
-    finish(call, h, before, motion, shown, int(descent.corrections))
+    status = judge(pair, motion.pose.p, found, False, descent.tolerance, False)
+    finish(call, h, before, motion, shown, status, int(descent.corrections))
 
 
 @kernel

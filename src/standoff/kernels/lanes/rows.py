@@ -23,13 +23,7 @@ from standoff.kernels.lanes.support import (
     is_settled,
     turned,
 )
-from standoff.kernels.pair.certificate import (
-    SINGLE,
-    Cones,
-    NormalCone,
-    certify_cones,
-    only_normal,
-)
+from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone, certify_cones
 from standoff.kernels.pair.certified import CERTIFIED, outcome_of
 from standoff.kernels.pair.newton import ldl, ldl_solve, metric_norm, pair_metric
 from standoff.kernels.pair.system import gradient, hessian, projection_errors
@@ -144,7 +138,7 @@ def weighed(pair, tolerance, near, pose, a, b):
         sub(jet_b[0], jet_a[0]),
     )
     place = Place(0, a.chart, 0, b.chart, a.p, a.q, b.p, b.q)
-    d, lower, n, blur = certify_cones(only_normal, pair, pose, place, cones, ORIGIN)
+    d, lower, n, blur = certify_cones(pair, pose, place, cones, ORIGIN)
     slope = metric_norm(pair_metric(jet_a, jet_b), gradient(projection_errors(jet_a, jet_b)))
     at_rest = slope <= AT_REST * EPS * pair_span(pair, pose.p, d)
     proven = outcome_of(pair, pose, d, lower, blur, tolerance) == CERTIFIED

@@ -13,14 +13,12 @@ from standoff.kernels.algebra.vectors import cross, dot, norm, rotate, scale, su
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_normal, dimension, pair_span
 from standoff.kernels.body.trimming import NO_HIT
-from standoff.kernels.compiler.decorators import kernel, shared, stack_matrix, stack_reals
+from standoff.kernels.compiler.decorators import kernel, shared, small, stack_matrix, stack_reals
 from standoff.kernels.pair.certificate import (
     CIRCLE,
     cones_at,
     into_b,
     nearest_normal,
-    nearest_of_a,
-    nearest_of_b,
 )
 from standoff.kernels.pair.descent import pair_jets, recentre, walk_pair
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, exhausted
@@ -29,12 +27,24 @@ from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT, PIVOT
 from standoff.kernels.values import STILL, Place, Vector, moved, of_origin, side_of
 
 
+@small
+def nearest_of_a(pair, place, cones, n):
+    """`nearest_normal` of A."""
+    return nearest_normal(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
+
+
+@small
+def nearest_of_b(pair, place, cones, m):
+    """`nearest_normal` of B, in B's frame."""
+    return nearest_normal(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
+
+
 @kernel
 def facing(pair, pose, place, cones, n):
     """How nearly is n a normal of A and -n one of B? 2 where both are."""
     m = into_b(pose.R, n)
-    of_a = dot(n, nearest_of_a(nearest_normal, pair, place, cones, n)[0])
-    return of_a + dot(m, nearest_of_b(nearest_normal, pair, place, cones, m)[0])
+    of_a = dot(n, nearest_of_a(pair, place, cones, n)[0])
+    return of_a + dot(m, nearest_of_b(pair, place, cones, m)[0])
 
 
 @kernel
@@ -68,13 +78,9 @@ def common_normal(pair, pose, place, jets):
         cones = cones_at(pair, pose, place, jets)
         return outward(pair, pose, place, cones, unit(perpendicular)), True
     if ia[L.DIMENSION] == 2 and dimension(ia, a.feature) == 1:
-        return nearest_of_a(
-            nearest_normal, pair, place, cones_at(pair, pose, place, jets), unit(gap)
-        )[0], True
+        return nearest_of_a(pair, place, cones_at(pair, pose, place, jets), unit(gap))[0], True
     if ib[L.DIMENSION] == 2 and dimension(ib, b.feature) == 1:
-        m, _ = nearest_of_b(
-            nearest_normal, pair, place, cones_at(pair, pose, place, jets), unit(gap)
-        )
+        m, _ = nearest_of_b(pair, place, cones_at(pair, pose, place, jets), unit(gap))
         return scale(-1.0, rotate(pose.R, m)), True
     return unit(gap), False
 

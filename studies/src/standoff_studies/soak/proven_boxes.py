@@ -33,12 +33,22 @@ TELL = 30.0
 
 
 class Tree(NamedTuple):
-    """All cells that were looked at, found again by a number that stands for place and depth."""
+    """All cells that were looked at.
 
-    keys: NDArray[np.uint64]
+    Attributes
+    ----------
+    kinds, along : (n,) arrays
+        As of `Looked`.
+    halves : (n, 2) array
+        Where the two halves of a cell are, if it was halved.
+    first : int
+        Where the whole box is.
+    """
+
     kinds: Whole
     along: Whole
-    factors: NDArray[np.uint64]
+    halves: Whole
+    first: int
 
     @classmethod
     def of(cls, looked: list[tuple[Cells, Whole, Whole]], columns: int) -> Tree:
@@ -50,22 +60,42 @@ class Tree(NamedTuple):
         order = np.argsort(keys)
         if (np.diff(keys[order]) == 0).any():
             raise ValueError("two cells have one key: draw other factors")
-        return cls(keys[order], kinds[order], along[order], factors)
+
+        def at(place: Whole, depth: Whole) -> Whole:
+            wanted = key_of(place, depth, factors)
+            found = np.searchsorted(keys[order], wanted)
+            if not np.array_equal(keys[order][found], wanted):
+                raise ValueError("a cell was halved, and a half of it not looked at")
+            return order[found]
+
+        halved = np.flatnonzero(kinds < 0)
+        place, depth = cells.place[halved].copy(), cells.depth[halved].copy()
+        rows = np.arange(len(halved)), along[halved]
+        place[rows] *= 2
+        depth[rows] += 1
+        halves = np.full((len(kinds), 2), -1)
+        halves[halved, 0] = at(place, depth)
+        place[rows] += 1
+        halves[halved, 1] = at(place, depth)
+        none = np.zeros((1, columns), dtype=np.int64)
+        return cls(kinds, along, halves, int(at(none, none)[0]))
 
     def kinds_at(self, points: Array) -> Whole:
         """Of the cells that hold points (n, columns) of the unit cube."""
         found = np.full(len(points), -1)
-        left = np.arange(len(points))
-        place, depth = (np.zeros(points.shape, dtype=np.int64) for _ in range(2))
+        left, within = np.arange(len(points)), points.copy()  # where in its cell each point is
+        at = np.full(len(points), self.first)
         while len(left):
-            at = np.searchsorted(self.keys, key_of(place[left], depth[left], self.factors))
-            kind, along = self.kinds[at], self.along[at]
+            kind = self.kinds[at]
             found[left] = kind
-            left, along = left[kind < 0], along[kind < 0]
-            depth[left, along] += 1
-            # the cell of that depth which the point is in; the last one has its upper end too
-            parts = np.ldexp(points[left, along], depth[left, along]).astype(np.int64)
-            place[left, along] = np.minimum(parts, (1 << depth[left, along]) - 1)
+            on = kind < 0
+            left, at = left[on], at[on]
+            place = left, self.along[at]
+            # exact; the last cell has its upper end too
+            x = 2.0 * within[place]
+            upper = x >= 1.0
+            within[place] = x - upper
+            at = self.halves[at, upper.astype(np.int64)]
         return found
 
 
