@@ -298,3 +298,17 @@ def test_a_world_of_different_ellipsoids(rng):
         assert abs(pairs.lower_bound[k] - one.lower_bound) <= 1e-13
         told += one.status is Status.CONVERGED
     assert told > 30
+
+
+def test_what_is_not_proven_is_left_to_the_general_frame(rng):
+    """A tolerance that no bound meets: there is nothing that lanes may say."""
+    n, law = ROWS + 3, so.PredictorCorrector(tolerance=1e-18)
+    tracker = so.Tracker(PART, TOOL, law=law)
+    gaps = rng.uniform(0.2, 1.0, size=n) + rng.uniform(-2e-3, 2e-3, size=(2, n))
+    first, second = approached(np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2]), gaps, rng)
+    states = tracker.start_many(*first)
+    _, answers = tracker.step_many(states, *second)
+    assert (answers.rows[:, OUT_COUNTS + GENERAL_FRAMES] == 1.0).all()
+    for k in range(n):
+        _, one = tracker.step(states[k], second[0][k], second[1][k])
+        np.testing.assert_array_equal(answers.rows[k], one._out[:N_OUT])
