@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from statistics import median
 from typing import Any
 
@@ -88,7 +89,7 @@ def of_states(name: str, axes: Any) -> Iterator[str]:
         poses = drawn(min(n, STARTED), reach)
         lanes = Rows(so.Tracker(a, b), poses, n)
         single = Rows(so.Tracker(a, b, law=BEYOND_ALL), poses, n)
-        found = taken({"lanes": lanes.run, "two": lambda x=lanes: x.run(2), "one": single.run})
+        found = taken({"lanes": lanes.run, "two": partial(lanes.run, 2), "one": single.run})
         miss = abs(lanes.new[:, K.DISTANCE] - single.new[:, K.DISTANCE]).max() / (a.size + b.size)
         yield (
             f"frames of {name}, {n:,} states: {1e9 * found['lanes'] / n:.0f} ns in lanes, "
