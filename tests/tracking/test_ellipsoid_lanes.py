@@ -216,14 +216,23 @@ def step_by_step(tracker, states, poses_a, poses_b, **given):
     ]
 
 
-@pytest.mark.parametrize("rounding", [0.0, 0.05])
-@pytest.mark.parametrize("twists", [False, True])
-def test_frames_in_lanes_are_those_of_step(rng, rounding, twists):
+@pytest.mark.parametrize(
+    ("rounding", "twists", "way"),
+    [
+        (0.0, False, 2e-3),
+        (0.05, True, 2e-3),
+        (0.0, True, 0.02),
+        (0.05, False, 0.02),
+        (0.0, True, 0.0),
+    ],
+)
+def test_frames_in_lanes_are_those_of_step(rng, rounding, twists, way):
     """To 1e-13 where they are in lanes, elsewhere to the last bit: answers, counts and states."""
     a = so.shapes.ellipsoid(0.5, 0.8, 0.9, rounding=rounding)
-    tracker, n = so.Tracker(a, TOOL), 3 * ROWS + 11
-    gaps = rng.uniform(-0.02, 1.5, size=n) + rng.uniform(-2e-3, 2e-3, size=(2, n))
-    first, second = approached(np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2]), gaps, rng)
+    tracker, n = so.Tracker(a, TOOL), 8 * ROWS + 11
+    gaps = rng.uniform(-0.02, 1.5, size=n) + rng.uniform(-way, way, size=(2, n))
+    axes = np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2])
+    first, second = approached(*axes, gaps, rng, way)
     states = tracker.start_many(*first)
     given = {"twist_a": rng.normal(size=(n, 6)), "twist_b": rng.normal(size=(n, 6))}
     both = {"twists_a": given["twist_a"], "twists_b": given["twist_b"]} if twists else {}
@@ -232,7 +241,7 @@ def test_frames_in_lanes_are_those_of_step(rng, rounding, twists):
     rows = np.array([answer._out[:N_OUT] for _, answer in alone])
     kept = np.array([state.warm_start[:N_STATE] for state, _ in alone])
     lanes = by_lanes(answers)
-    assert 0.6 < lanes.mean() < 1.0
+    assert (0.6 if way < 0.02 else 0.1) < lanes.mean() < 1.0
     size = a.size + TOOL.size
     ours = found.blocks[:, BLOCK_STATE : BLOCK_STATE + N_STATE]
     for one, other in ((answers.rows, rows), (ours, kept)):
