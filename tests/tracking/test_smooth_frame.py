@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from draws import draws
 from on_first_use import OnFirstUse
+from shares import share
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.state import arrays as K
@@ -95,8 +96,9 @@ def agree(smooth: so.Proximity, general: so.Proximity, size: float) -> None:
         np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-8, err_msg=name)
 
 
-@pytest.mark.parametrize("law", [so.PredictorCorrector(), so.PredictorCorrector(deadline=3)])
-@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize(
+    ("pair", "law"), share(2, PAIRS, [so.PredictorCorrector(), so.PredictorCorrector(deadline=3)])
+)
 def test_it_answers_as_the_general_frame(
     pair: str, law: so.PredictorCorrector, rng: np.random.Generator
 ) -> None:
