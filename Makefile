@@ -6,6 +6,8 @@ ALL := .venv/.installed-all
 CLI := .venv/.installed-cli
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 DECLARED := pyproject.toml studies/pyproject.toml constraints.txt
+# The tests start many interpreters: each would compile every module anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: venv torch gpu demo paper bench wheel numba-range check test soak lint types layers docs clean
 

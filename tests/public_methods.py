@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,9 @@ SPHERE, BOX = so.shapes.sphere(0.5), so.shapes.box(1.0, 1.0, 1.0)
 TRACKER = so.Tracker(SPHERE, BOX)
 WORLD = so.World({"ball": SPHERE, "box": BOX}, within=0.5, fixed={"box": HOME})
 POINTS, SPATIAL = so.PointTracker(DISC), so.PointTracker(BOX)
+
+
+regions_of = cache(so.voronoi_regions)
 
 
 def method_calls() -> list[Call]:
@@ -61,8 +65,8 @@ def method_calls() -> list[Call]:
         (BOX.transformed, {"affine": np.diag([1.0, 2.0, 3.0])}),
         (BOX.transformed, {"affine": (np.eye(3), np.ones(3))}),
         (AWAY.apply, {"points": [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]}),
-        (so.voronoi_regions(BOX).feature_at, {"point": [2.0, 0.1, 0.2]}),
-        (so.voronoi_regions(DISC).feature_at, {"point": [2.0, 0.1]}),
+        (regions_of(BOX).feature_at, {"point": [2.0, 0.1, 0.2]}),
+        (regions_of(DISC).feature_at, {"point": [2.0, 0.1]}),
         (surface.restricted, {"u0": 0.1, "u1": 0.5, "v0": 0.2, "v1": 0.8}),
         (curve.transformed, {"linear": np.eye(3), "shift": np.ones(3)}),
         (surface.transformed, {"linear": np.eye(3), "shift": np.ones(3)}),

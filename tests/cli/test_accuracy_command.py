@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -44,10 +45,11 @@ def test_files_and_tables(standoff: Standoff, tmp_path: Path) -> None:
 
 def test_any_row_can_be_asked_again(standoff: Standoff, tmp_path: Path) -> None:
     """Bodies, poses, points and normal of a row are those of its answer."""
+    made = cache(lambda text: eval(text, {"so": so}))
     chosen = ["halfspace", "torus hull", "NURBS ellipsoid"]
     assert standoff("accuracy", *chosen, "--cases", 1, "-o", tmp_path).code == 0
     for row in parquet.read_table(tmp_path / "accuracy.parquet").to_pylist():
-        a, b = (eval(row[name], {"so": so}) for name in ("body_a", "body_b"))
+        a, b = (made(row[name]) for name in ("body_a", "body_b"))
         pose_a, pose_b = (
             (np.reshape(row[name][:9], (3, 3)), np.array(row[name][9:]))
             for name in ("pose_a", "pose_b")

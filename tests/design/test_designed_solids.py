@@ -7,6 +7,7 @@ from mpmath import mp, mpf
 from scipy.interpolate import BSpline
 
 import standoff as so
+from shares import only
 from standoff.errors import StandoffError
 from standoff.geometry import BezierPatch, NurbsSurface
 
@@ -63,14 +64,23 @@ def test_the_wall_round_a_solid_inside_another(swapped):
     assert abs(second["r"]) <= 1e-9
 
 
-def test_control_points_of_a_spline_move_the_gap_by_their_basis_functions():
-    """A bent beam, whose lower side is a cubic of two spans: the oracle is SciPy's basis."""
-    knots = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 1.0]
-    points = np.array([[-1.0, 0.0], [-0.6, 0.6], [0.1, 0.1], [0.5, 0.7], [1.0, 0.2]])
+SPLINES = {
+    2: [[-1.0, 0.0], [-0.5, 0.5], [0.4, 0.2], [1.0, 0.4]],
+    3: [[-1.0, 0.0], [-0.6, 0.6], [0.1, 0.1], [0.5, 0.7], [1.0, 0.2]],
+}
+
+
+@pytest.mark.parametrize("degree", only([2], SPLINES))
+def test_control_points_of_a_spline_move_the_gap_by_their_basis_functions(degree):
+    """A bent beam, whose upper side is a spline of two spans: the oracle is SciPy's basis."""
+    ends = [0.0] * (degree + 1), [1.0] * (degree + 1)
+    knots, points = [*ends[0], 0.5, *ends[1]], np.array(SPLINES[degree])
 
     def beam(control):
         low = np.insert(np.asarray(control), 1, 0.0, axis=1)
-        high = np.insert(np.column_stack([points[:, 0], np.full(5, -0.5)]), 1, 0.0, axis=1)
+        high = np.insert(
+            np.column_stack([points[:, 0], np.full(len(points), -0.5)]), 1, 0.0, axis=1
+        )
         y = np.array([0.0, 0.4, 0.0])
         ends = [0.0, 0.0, 1.0, 1.0]
         sides = [
@@ -90,14 +100,14 @@ def test_control_points_of_a_spline_move_the_gap_by_their_basis_functions():
     for place in ((-0.5, 0.1, 0.9), (0.6, 0.1, 1.1)):
         answer = so.solids.distance(design.body, ball, REST, at(*place))
         found = so.shape_gradient(answer, a=design)
-        curve = BSpline(knots, points, 3)
+        curve = BSpline(knots, points, degree)
         grid = np.linspace(0.0, 1.0, 10001)
         t = grid[np.linalg.norm(curve(grid) - answer.point_a[[0, 2]], axis=1).argmin()]
         for _ in range(20):  # Newton's method: the foot of the witness point
             off, speed = curve(t) - answer.point_a[[0, 2]], curve(t, 1)
             t -= off @ speed / (speed @ speed + off @ curve(t, 2))
         assert np.linalg.norm(off) <= 1e-9
-        basis = BSpline.design_matrix([t], np.array(knots), 3).toarray()[0]
+        basis = BSpline.design_matrix([t], np.array(knots), degree).toarray()[0]
         true = -np.outer(basis, answer.normal[[0, 2]])
         np.testing.assert_allclose(found.a["control"], true, rtol=0.0, atol=1e-8)
 
@@ -131,14 +141,15 @@ def test_numbers_that_are_nothing_but_roundoff_are_no_scale():
 
 
 def test_an_answer_of_other_solids_or_of_a_compound_is_refused():
-    ring, ball = so.Design(makers.ring, major=0.9, minor=0.25), so.shapes.sphere(0.1)
-    other = so.solids.distance(makers.ring(0.9, 0.3), ball, REST, at(0.1, 0.2, 0.3))
+    block, ball = so.Design(so.shapes.box, size=[1.0, 1.0, 1.0]), so.shapes.sphere(0.1)
+    longer = so.shapes.box(1.0, 1.0, 1.2)
+    other = so.solids.distance(so.Solid(longer), ball, REST, at(0.1, 0.2, 0.9))
     with pytest.raises(StandoffError, match="not the body of the design"):
-        so.shape_gradient(other, a=ring)
-    pieces = so.compound({"ring": so.Solid(ring.body), "ball": (ball, at(3.0, 0.0, 0.0))})
-    answer = so.distance(pieces, ball, REST, at(0.1, 0.2, 0.3))
+        so.shape_gradient(other, a=block)
+    pieces = so.compound({"block": so.Solid(block.body), "ball": (ball, at(3.0, 0.0, 0.0))})
+    answer = so.distance(pieces, ball, REST, at(0.1, 0.2, 0.9))
     with pytest.raises(StandoffError, match="compound"):
-        so.shape_gradient(answer, a=ring)
+        so.shape_gradient(answer, a=block)
     box = so.distance(so.Solid(so.shapes.box(1.0, 1.0, 1.0)), ball, REST, at(0.9, 0.1, 2.0))
     with pytest.raises(StandoffError, match="has no edge"):
         so.shape_gradient(box, a=so.Design(so.shapes.sphere, radius=1.0))

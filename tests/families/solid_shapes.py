@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 
 import numpy as np
@@ -55,8 +56,13 @@ def bolt() -> Solid:
     return Solid(solid_parts.bolt(1.0, 2.0, 3.0, 4.0).boundary)
 
 
-def prism(outline: list[tuple[float, float]], height: float) -> Solid:
+def prism(outline: Iterable[tuple[float, float]], height: float) -> Solid:
     """Of a polygon in the plane z = 0, up to a height."""
+    return _prism(tuple(outline), height)
+
+
+@cache
+def _prism(outline: tuple[tuple[float, float], ...], height: float) -> Solid:
     return Solid(solid_parts.swept(np.array(outline, dtype=float), 0.0, height, 0.0, "prism"))
 
 

@@ -86,8 +86,7 @@ def test_they_hold_every_sample(name: str, width: float, seed: int) -> None:
     np.testing.assert_allclose(np.linalg.norm(bounds.axis[0]), 1.0, atol=8 * EPS)
 
 
-@pytest.mark.parametrize("width", [0.3, 1e-3])
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize(("name", "width"), share(2, KINDS, [0.3, 1e-3]))
 def test_jets_are_held_and_nearly_so(name: str, width: float) -> None:
     """All six rows at a grid of each of some boxes that nothing divides."""
     loose = []

@@ -10,6 +10,7 @@ import pytest
 from numba import njit
 
 import standoff as so
+from shares import share
 from standoff.bodies.features import feature_of
 from standoff.kernels.compiler.decorators import pointer
 from standoff.kernels.entries.queries import chart_normal, feature_jet
@@ -106,8 +107,7 @@ def test_no_side_or_corner_holds_a_point_on_a_far_face(name: str) -> None:
             assert found == truth.feature_a, (x, face, u, v, found, truth.feature_a)
 
 
-@pytest.mark.parametrize("far_side", ["left", "kept"])
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize(("name", "far_side"), share(2, BODIES, ["left", "kept"]))
 def test_voronoi_tests_lead_to_the_nearest_feature(name: str, far_side: str) -> None:
     """From every feature to that of a cold query, or, where the far side is kept, to a face that
     has the point behind it; and never farther from the point at a switch (the paper: the distance

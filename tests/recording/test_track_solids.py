@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import fields
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,13 @@ from standoff.recording import Recording
 from standoff.tracking.branches import Birth, End
 from standoff.view.export import save_page
 
-FEET = prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
-"""A bridge upside down: two feet at y = 1, and a floor between them at y = 0.5."""
+
+@cache
+def feet() -> so.Solid:
+    """A bridge upside down: two feet at y = 1, and a floor between them at y = 0.5."""
+    return prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
+
+
 BALL = so.shapes.sphere(0.3)
 ACROSS = straight((0.2, 1.5, 0.5), (1.0, 0.0, 0.0))
 """At 1 a second from one foot over the floor to the other, 0.5 above their tops."""
@@ -27,7 +33,7 @@ STEP = 0.0127
 
 @pytest.fixture(scope="module")
 def run() -> Recording:
-    tracker = so.Tracker(FEET, BALL, STEP, minima=0.75)
+    tracker = so.Tracker(feet(), BALL, STEP, minima=0.75)
     return so.track(tracker, REST, ACROSS, 2.6)
 
 
@@ -65,7 +71,7 @@ def test_distances_and_rates_are_those_by_hand(run: Recording) -> None:
 def test_rates_where_both_move() -> None:
     rng = np.random.default_rng(20261128)
     a, b = Tumbling(rng, np.zeros(3)), Tumbling(rng, (3.0, 1.0, 0.0))
-    run = so.track(so.Tracker(bracket(), FEET, 1e-3), a, b, 0.2)
+    run = so.track(so.Tracker(bracket(), feet(), 1e-3), a, b, 0.2)
     smooth = np.ones(len(run), dtype=bool)
     for event in run.events:
         smooth[event.frame - 2 : event.frame + 2] = False
@@ -75,7 +81,7 @@ def test_rates_where_both_move() -> None:
 
 
 def test_a_frame_is_that_of_a_run(run: Recording) -> None:
-    tracker = so.Tracker(FEET, BALL, minima=0.75)
+    tracker = so.Tracker(feet(), BALL, minima=0.75)
     poses = np.array([ACROSS.pose(t).matrix for t in run.time])
     state = tracker.start(np.eye(4), poses[0])
     _, answers = tracker.run(state, np.eye(4), poses[1:])
@@ -117,7 +123,7 @@ def test_a_file_holds_all_of_it(run: Recording, tmp_path: Path) -> None:
     table = pq.read_table(tmp_path / "run.parquet")
     told = json.loads(table.schema.metadata[b"standoff"])
     assert told["format_version"] == 5
-    assert told["a_sha256"] == FEET.boundary.digest
+    assert told["a_sha256"] == feet().boundary.digest
     assert told["b_sha256"] == BALL.digest
     assert told["options"]["tolerance"] == 1e-10
     assert told["options"]["minima"] == 0.75
@@ -128,7 +134,7 @@ def test_a_file_holds_all_of_it(run: Recording, tmp_path: Path) -> None:
 
 def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:
     for name in ("1.parquet", "2.parquet"):
-        short = so.track(so.Tracker(FEET, BALL, 0.1, minima=0.75), REST, ACROSS, 1.0)
+        short = so.track(so.Tracker(feet(), BALL, 0.1, minima=0.75), REST, ACROSS, 1.0)
         short.save(tmp_path / name)
     assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
 
@@ -180,7 +186,7 @@ def test_where_pairs_tie_there_is_no_rate() -> None:
 
 
 def test_features_are_told_without_minima_too(run: Recording) -> None:
-    alone = so.track(so.Tracker(FEET, BALL, STEP), REST, ACROSS, 2.6)
+    alone = so.track(so.Tracker(feet(), BALL, STEP), REST, ACROSS, 2.6)
     assert [event[:5] for event in alone.events] == [event[:5] for event in run.events]
     assert alone.feature_a.tolist() == run.feature_a.tolist()
     assert alone.distance == pytest.approx(run.distance, abs=1e-12)
@@ -189,7 +195,7 @@ def test_features_are_told_without_minima_too(run: Recording) -> None:
 
 
 def test_it_begins_at_a_state(run: Recording) -> None:
-    tracker = so.Tracker(FEET, BALL, STEP)
+    tracker = so.Tracker(feet(), BALL, STEP)
     state = tracker.start(REST, ACROSS.pose(0.0))
     other = so.Tracker(bracket(), BALL, STEP).start(REST, ACROSS.pose(0.0))
     from standoff.recording.track import track_along
@@ -204,9 +210,9 @@ def test_it_begins_at_a_state(run: Recording) -> None:
 
 
 def test_without_looking_into_the_steps(run: Recording) -> None:
-    dated = so.track(so.Tracker(FEET, BALL, STEP, minima=0.75), REST, ACROSS, 2.6, locate=False)
+    dated = so.track(so.Tracker(feet(), BALL, STEP, minima=0.75), REST, ACROSS, 2.6, locate=False)
     assert [event.frame for event in dated.events] == [event.frame for event in run.events]
     assert [event.time for event in dated.events] == [dated.time[e.frame] for e in run.events]
     assert not any(event.located for event in dated.events)
     with pytest.raises(TypeError, match="is not a Tracker"):
-        so.track(FEET, REST, ACROSS, 1.0)
+        so.track(feet(), REST, ACROSS, 1.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -35,8 +37,11 @@ def turn(vector: list[float]) -> np.ndarray:
     return Rotation.from_rotvec(vector).as_matrix()
 
 
-HOOP = ring(0.3, 0.05)
-BLOCK = so.Solid(so.shapes.box((2.0, 2.0, 2.0)))
+@cache
+def hoop() -> so.Solid:
+    return ring(0.3, 0.05)
+
+
 TURNED = so.Pose(turn([0.3, 0.2, 0.0]), [0.05, 0.02, 0.1])
 
 
@@ -90,7 +95,7 @@ def test_through_a_ring(off: float, proven: bool) -> None:
         [place],
         [[0.0, 0.0, 1.0]],
         [(0, ball, np.eye(4))],
-        fixed={"ring": (HOOP, np.eye(4))},
+        fixed={"ring": (hoop(), np.eye(4))},
     )
     path = made.certify([[-1.0], [1.0]], 1e-3)
     box = made.certify_box([-1.0], [1.0], 1e-3)
@@ -119,7 +124,7 @@ def test_what_is_apart_along_one_normal_meets_across_it() -> None:
         [place],
         [[0.0, 1.0, 0.0]],
         [(0, so.shapes.sphere(0.1), np.eye(4))],
-        fixed={"ring": (HOOP, np.eye(4))},
+        fixed={"ring": (hoop(), np.eye(4))},
     )
     # 0.25 - 0.1 from the axis the ball meets the tube
     meets = np.sqrt(0.15**2 - 0.1**2)
@@ -141,8 +146,8 @@ def test_links_of_a_chain_come_apart_only_through_each_other() -> None:
         [-1],
         [np.eye(4)],
         [[1.0, 0.0, 0.0]],
-        [(0, HOOP, place)],
-        fixed={"ring": (HOOP, np.eye(4))},
+        [(0, hoop(), place)],
+        fixed={"ring": (hoop(), np.eye(4))},
     )
     # the circles are 0.3 - |x| apart: less both minor radii
     assert made.certify([[-0.15], [0.15]], 0.01)
@@ -152,7 +157,7 @@ def test_links_of_a_chain_come_apart_only_through_each_other() -> None:
 
 
 def test_rows_beside_a_ring_are_derivatives() -> None:
-    made = robot(hoop=(HOOP, TURNED))
+    made = robot(hoop=(hoop(), TURNED))
     q, v, h = np.array([0.1, 0.3]), np.array([0.4, -0.7]), 1e-6
     rows = made.distances(q)
     ahead, behind = (made.distances(q + s * h * v).distance[0] for s in (1.0, -1.0))
@@ -170,7 +175,7 @@ def test_rows_beside_a_ring_are_derivatives() -> None:
 
 def test_a_ball_on_the_axis_has_no_derivative_by_turns() -> None:
     """Every point of the ring is as near: only the way along the normal counts."""
-    made = robot(hoop=(HOOP, so.Pose(np.eye(3), [0.02, 0.0, 0.1])))
+    made = robot(hoop=(hoop(), so.Pose(np.eye(3), [0.02, 0.0, 0.1])))
     flag = made.clearance([0.0, 0.0])
     assert flag.status is Status.CONTINUUM
     assert flag.smoothness is Smoothness.PARTIAL
@@ -178,7 +183,9 @@ def test_a_ball_on_the_axis_has_no_derivative_by_turns() -> None:
 
 
 def test_inside_a_solids_material_is_below_the_wall() -> None:
-    made = robot(block=(BLOCK, so.Pose(np.eye(3), [0.5, 0.0, 0.0])))
+    made = robot(
+        block=(so.Solid(so.shapes.box((2.0, 2.0, 2.0))), so.Pose(np.eye(3), [0.5, 0.0, 0.0]))
+    )
     q, v, h = np.array([0.0, 0.0]), np.array([0.3, 0.5]), 1e-6
     rows = made.distances(q)
     one = made.clearance(q)
@@ -203,7 +210,7 @@ def test_a_mesh_may_stand_for_a_solid() -> None:
       vertex="0 0 0  .2 0 0  0 .2 0  .2 .2 0  0 0 .2  .2 0 .2  0 .2 .2  .2 .2 .2"/></asset>
       <worldbody><geom name="floor" type="plane" size="1 1 1"/><body pos="0 0 1"><freejoint/>
       <geom name="part" type="mesh" mesh="cube"/></body></worldbody></mujoco>"""
-    made = Robot.from_mujoco(mujoco.MjModel.from_xml_string(cube), meshes={"part": HOOP})
+    made = Robot.from_mujoco(mujoco.MjModel.from_xml_string(cube), meshes={"part": hoop()})
     q = np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0])
     part = next(geom for geom in made.report().geoms if geom.name == "part")
     assert part.became == "given"
@@ -213,7 +220,7 @@ def test_a_mesh_may_stand_for_a_solid() -> None:
 
 def test_a_robot_among_solids_is_shown() -> None:
     pytest.importorskip("viser")
-    made = robot(hoop=(HOOP, TURNED))
+    made = robot(hoop=(hoop(), TURNED))
     path = [[0.0, 0.0], [0.1, 0.2]]
     with made.view(path, proof=made.certify(path), open=False) as page:
         course = page.stage.player.recording
@@ -226,7 +233,7 @@ def test_a_robot_among_solids_is_shown() -> None:
 
 def test_what_takes_no_solids_says_so() -> None:
     pytest.importorskip("casadi")
-    made = robot(hoop=(HOOP, TURNED))
+    made = robot(hoop=(hoop(), TURNED))
     with pytest.raises(so.StandoffError, match="CasADi takes convex bodies alone, and 'hoop'"):
         so.robots.casadi_distance(made, [("tip", "hoop")])
     with pytest.raises(TypeError, match="with a Body, a Solid or a Compound"):

@@ -24,7 +24,7 @@ def falling(nut_: Solid, bolt_: Solid) -> Operator:
 
 def test_what_presses_on_both_turns_is_found() -> None:
     """All but what has come up within the last ticks, of which one in four tries all pieces."""
-    bolt_, nut_ = bolt(THREAD, 4, 0.004), nut(THREAD, 2, 0.015, PLAY)
+    bolt_, nut_ = bolt(THREAD, 3, 0.004), nut(THREAD, 2, 0.015, PLAY)
     operator = falling(nut_, bolt_)
     state = operator.run(operator.start(), 110).final
     found, missed = 0, 0

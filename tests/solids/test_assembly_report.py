@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import standoff as so
+from on_first_use import OnFirstUse
 from standoff.clearance.assembly import AssemblyFile
 from standoff.clearance.fits import Fit
 from standoff.clearance.page import page_of
@@ -26,13 +27,15 @@ from standoff.clearance.verdicts import Verdict
 from standoff.solids.spatial import distance as spatial_distance_module
 from standoff_studies.soak.solid_parts import bolt, plate, ring
 
-PARTS = {
-    "plate": plate(8.0, 1.0, 1.1).boundary,
-    "bolt": bolt(1.0, 2.0, 3.0, 4.0).boundary,
-    "ring": ring(2.6, 0.4).boundary,
-    "ball": so.shapes.ellipsoid(0.2, 0.2, 0.2),
-    "far": so.shapes.ellipsoid(0.2, 0.3, 0.2),
-}
+PARTS = OnFirstUse(
+    {
+        "plate": lambda: plate(8.0, 1.0, 1.1).boundary,
+        "bolt": lambda: bolt(1.0, 2.0, 3.0, 4.0).boundary,
+        "ring": lambda: ring(2.6, 0.4).boundary,
+        "ball": lambda: so.shapes.ellipsoid(0.2, 0.2, 0.2),
+        "far": lambda: so.shapes.ellipsoid(0.2, 0.3, 0.2),
+    }
+)
 PLACES = {
     name: so.Pose(np.eye(3), place)
     for name, place in {

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from draws import draws
 from families.solid_shapes import bolt, bracket, egg, peg, ring, tube
+from on_first_use import OnFirstUse
 from shares import share
 from standoff.kernels.algebra.rigid import unit_quaternion
 from standoff.kernels.entries.queries import on_face
@@ -45,12 +46,14 @@ from standoff.solids.spatial.minimum import leaf_jet_of
 
 Array = np.ndarray
 STILL = np.eye(4)
-PAIRS = {
-    "bracket, bolt": (bracket(), bolt()),
-    "ring, peg": (ring(1.0, 0.25), peg(0.3, -1.0, 1.0)),
-    "bracket, peg": (bracket(), peg(0.6, -1.0, 1.0)),
-    "egg, tube": (egg(0.9, 0.6, 0.4), tube(0.5, 0.8, 0.0, 0.6)),
-}
+PAIRS = OnFirstUse(
+    {
+        "bracket, bolt": lambda: (bracket(), bolt()),
+        "ring, peg": lambda: (ring(1.0, 0.25), peg(0.3, -1.0, 1.0)),
+        "bracket, peg": lambda: (bracket(), peg(0.6, -1.0, 1.0)),
+        "egg, tube": lambda: (egg(0.9, 0.6, 0.4), tube(0.5, 0.8, 0.0, 0.6)),
+    }
+)
 SAMPLES = 4
 # Of B, length.
 RADIUS = 0.3

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.solid_shapes import ball, peg, prism, socket, tube
+from on_first_use import OnFirstUse
 from standoff.solids import Solid, distance
 from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.models import as_model
@@ -17,24 +20,34 @@ from standoff.solids.spatial.pair import PlacedPair
 from standoff.tracking.status import Status
 
 STILL = so.Pose.identity()
-HOLE = tube(1.0, 2.0, 0.0, 1.0)
-SLOT = prism([(-1, -1), (3, -1), (3, 2), (2, 2), (2, 0), (0, 0), (0, 2), (-1, 2)], 3.0)
+
+
+@cache
+def hole() -> Solid:
+    return tube(1.0, 2.0, 0.0, 1.0)
+
+
+@cache
+def slot() -> Solid:
+    return prism([(-1, -1), (3, -1), (3, 2), (2, 2), (2, 0), (0, 0), (0, 2), (-1, 2)], 3.0)
 
 
 def block(width: float, height: float, depth: float) -> Solid:
     return prism([(0, 0), (width, 0), (width, height), (0, height)], depth)
 
 
-HELD = {
-    "pin through its hole": (HOLE, peg(1.0, -0.5, 1.5), 0.0),
-    "pin flush with its hole": (HOLE, peg(1.0, 0.0, 1.0), 0.0),
-    "pin within its hole": (HOLE, peg(1.0, 0.2, 0.7), 0.0),
-    "pin half out of its hole": (HOLE, peg(1.0, 0.2, 1.7), 0.0),
-    "block on three sides": (SLOT, block(2.0, 1.0, 2.0), 0.5),
-    "block flush with its slot": (SLOT, block(2.0, 1.0, 3.0), 0.0),
-    "block through its slot": (SLOT, block(2.0, 3.0, 5.0), -1.0),
-    "ball in its socket": (socket(1.0, 2.0), ball(1.0), 0.0),
-}
+HELD = OnFirstUse(
+    {
+        "pin through its hole": lambda: (hole(), peg(1.0, -0.5, 1.5), 0.0),
+        "pin flush with its hole": lambda: (hole(), peg(1.0, 0.0, 1.0), 0.0),
+        "pin within its hole": lambda: (hole(), peg(1.0, 0.2, 0.7), 0.0),
+        "pin half out of its hole": lambda: (hole(), peg(1.0, 0.2, 1.7), 0.0),
+        "block on three sides": lambda: (slot(), block(2.0, 1.0, 2.0), 0.5),
+        "block flush with its slot": lambda: (slot(), block(2.0, 1.0, 3.0), 0.0),
+        "block through its slot": lambda: (slot(), block(2.0, 3.0, 5.0), -1.0),
+        "ball in its socket": lambda: (socket(1.0, 2.0), ball(1.0), 0.0),
+    }
+)
 
 
 LONGEST = ("pin flush with its hole", "pin half out of its hole")
@@ -65,7 +78,7 @@ def test_no_bound_is_below_the_depth_of_a_pin_in_its_hole(
     depth = 10.0**exponent
     thicker, off = share * depth, (1.0 - share) * depth
     pin = peg(1.0 + thicker, 0.2, 0.7)
-    pair = pair_of(HOLE, pin, (off * np.cos(angle), off * np.sin(angle), 0.0))
+    pair = pair_of(hole(), pin, (off * np.cos(angle), off * np.sin(angle), 0.0))
     tolerance = 1e-10 * pair.size
     assert depth_bound(pair, tolerance) >= depth * (1.0 - 1e-6) - 1e-15
 
@@ -74,7 +87,7 @@ def test_no_bound_is_below_the_depth_of_a_pin_in_its_hole(
 @given(st.floats(-9.0, -3.0), st.floats(-0.4, 0.4))
 def test_no_bound_is_below_the_depth_of_a_block_in_its_slot(exponent: float, up: float) -> None:
     depth = 10.0**exponent
-    pair = pair_of(SLOT, block(2.0 + depth, 1.0, 2.0), (-0.5 * depth, 0.0, 0.5 + up))
+    pair = pair_of(slot(), block(2.0 + depth, 1.0, 2.0), (-0.5 * depth, 0.0, 0.5 + up))
     assert depth_bound(pair, 1e-10 * pair.size) >= 0.5 * depth * (1.0 - 1e-6) - 1e-15
 
 

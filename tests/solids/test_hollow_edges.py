@@ -3,6 +3,8 @@ the edge or the vertex itself, and it holds as the faces beside it do."""
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -16,13 +18,22 @@ from standoff.tracking.status import Status
 from standoff_studies.soak import solid_parts
 
 STILL = so.Pose.identity()
-BRACKET = Solid.from_brep(*prism([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], 2.0))
+
+
+@cache
+def bracket() -> Solid:
+    return Solid.from_brep(*prism([(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)], 2.0))
+
+
 BOX = Solid(so.shapes.box((1.0, 1.0, 1.0)))
 DOWN = -1e-3
-SPIKE = Solid(
-    so.Body.from_points([[0, 0, 0], [-0.2, 1, -0.2], [0.2, 1, -0.2], [0.2, 1, 0.2], [-0.2, 1, 0.2]])
-)
-"""Its vertex down, at the origin."""
+
+
+@cache
+def spike() -> Solid:
+    """Its vertex down, at the origin."""
+    base = [[x, 1, z] for x, z in ((-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2))]
+    return Solid(so.Body.from_points([[0, 0, 0], *base]))
 
 
 def groove(slope: float) -> Solid:
@@ -44,11 +55,11 @@ def test_a_vertex_passes_a_hollow_edge_without_a_jump(degrees: float) -> None:
     for k, across in enumerate(np.linspace(-wide, wide, 21)):
         tip = np.array([DOWN * across, DOWN, 0.5 + 0.01 * k])
         true = block.signed_distance(tip[None])
-        found = distance(block, SPIKE, STILL, at(*tip), minima=5e-3)
+        found = distance(block, spike(), STILL, at(*tip), minima=5e-3)
         assert found.status is Status.OVERLAPPING
         assert found.distance == pytest.approx(true.distance[0], abs=1e-12)
         assert found.normal == pytest.approx(true.gradient[0], abs=1e-9)
-        turned = distance(SPIKE, block, at(*tip), STILL, minima=5e-3)
+        turned = distance(spike(), block, at(*tip), STILL, minima=5e-3)
         assert turned.distance == pytest.approx(found.distance, abs=1e-12)
         assert turned.normal == pytest.approx(-found.normal, abs=1e-9)
         features.add(found.feature_a.kind)
@@ -57,7 +68,7 @@ def test_a_vertex_passes_a_hollow_edge_without_a_jump(degrees: float) -> None:
 
 def test_a_box_in_a_corner_is_held_at_all_its_corners() -> None:
     over = 1e-4, 2e-4
-    found = distance(BRACKET, BOX, STILL, at(1.5 - over[0], 1.5 - over[1], 1.0), minima=1e-3)
+    found = distance(bracket(), BOX, STILL, at(1.5 - over[0], 1.5 - over[1], 1.0), minima=1e-3)
     told = sorted((round(m.distance, 9), *m.normal.round(6).tolist()) for m in found.minima)
     size = np.hypot(*over)
     beside = (round(-size, 9), *(np.round(over / size, 6).tolist()), 0.0)
@@ -111,7 +122,7 @@ def test_a_vertex_in_a_hollow_corner() -> None:
 def test_nothing_that_is_apart_is_pressed() -> None:
     """A vertex outside a convex edge, and one beside a thin wall, has no place below 0."""
     for place in ((3.6, 1.6, 1.0), (-0.6, -0.6, 1.0), (1.5 + 1e-3, 1.5 + 1e-3, 1.0)):
-        found = distance(BRACKET, BOX, STILL, at(*place), minima=0.5)
+        found = distance(bracket(), BOX, STILL, at(*place), minima=0.5)
         assert found.status in (Status.CONVERGED, Status.CONTINUUM)
         assert min(m.distance for m in found.minima) > 0.0
 
@@ -124,7 +135,7 @@ def test_a_box_that_is_pressed_askew_into_a_corner_stays_there(turned: bool) -> 
     box = sim.RigidBody.free(
         BOX, mass=1.0, inertia=np.eye(3) / 6.0, pose=at(1.5 + 1e-4, 1.5 + 1e-4, 1.0)
     )
-    bodies = [sim.RigidBody.fixed(BRACKET), box]
+    bodies = [sim.RigidBody.fixed(bracket()), box]
     system = sim.System(bodies[::-1] if turned else bodies, law, gravity=[-0.3, -1.0, 0.0])
     run = sim.Operator(system, 1e-4).run(sim.Operator(system, 1e-4).start(), 5000, 500)
     moved = run.final.pose(0 if turned else 1)
@@ -139,7 +150,7 @@ def test_what_stands_before_a_convex_edge_is_not_pressed() -> None:
     small = Solid(so.shapes.box((0.05, 0.05, 0.05)))
     law = sim.HuntCrossley(stiffness=1e6, depth=0.05, damping=0.5)
     body = sim.RigidBody.free(small, mass=1.0, inertia=np.eye(3), pose=at(3.1, 1.1, 1.0))
-    system = sim.System([sim.RigidBody.fixed(BRACKET), body], law, gravity=[0.0, 0.0, 0.0])
+    system = sim.System([sim.RigidBody.fixed(bracket()), body], law, gravity=[0.0, 0.0, 0.0])
     operator = sim.Operator(system, 1e-6)
     contact = operator.run(operator.start(), 1, 1).final.contact(0)
     assert min(place.distance for place in contact.places) == pytest.approx(0.075 * np.sqrt(2.0))
@@ -155,7 +166,7 @@ def test_an_edge_that_reaches_past_both_ends_of_a_hollow_edge(
     over: tuple[float, float], turned: bool
 ) -> None:
     """It is held at both ends, by what it is past: one wall or two."""
-    solids, poses = (BRACKET, LONG), (STILL, at(1.5 - over[0], 1.5 - over[1], 1.0))
+    solids, poses = (bracket(), LONG), (STILL, at(1.5 - over[0], 1.5 - over[1], 1.0))
     if turned:
         solids, poses = solids[::-1], poses[::-1]
     found = distance(*solids, *poses, minima=1e-3)
@@ -176,7 +187,7 @@ def test_a_tilted_edge_is_held_where_it_is_deepest() -> None:
     past = np.array([2e-4, 1e-4])
     for tilt in (1e-4, -1e-4):
         pose = so.Pose.exp([0.0, tilt, 0.0], [1.5 - past[0], 1.5 - past[1], 1.0])
-        found = distance(BRACKET, LONG, STILL, pose, minima=2e-3)
+        found = distance(bracket(), LONG, STILL, pose, minima=2e-3)
         [place] = [m for m in found.minima if "vertex" in (m.feature_a.kind, m.feature_b.kind)]
         end = 0.0 if tilt > 0.0 else 2.0
         assert place.point_a == pytest.approx([1.0, 1.0, end], abs=1e-9)
@@ -206,7 +217,7 @@ def test_a_long_box_that_is_pressed_into_a_short_corner_stays_there() -> None:
     inertia = np.diag([17.0, 17.0, 2.0]) / 12.0
     over = at(1.5 + 1e-4, 1.5 + 1e-4, 1.0)
     box = sim.RigidBody.free(LONG, mass=1.0, inertia=inertia, pose=over)
-    system = sim.System([sim.RigidBody.fixed(BRACKET), box], law, gravity=[-0.3, -1.0, 0.0])
+    system = sim.System([sim.RigidBody.fixed(bracket()), box], law, gravity=[-0.3, -1.0, 0.0])
     operator = sim.Operator(system, 1e-4)
     run = operator.run(operator.start(), 5000, 500)
     moved = run.final.pose(1)

@@ -3,6 +3,8 @@ from nothing and from frame to frame."""
 
 from __future__ import annotations
 
+from functools import cache, partial
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -10,15 +12,24 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from draws import draws
 from families.solid_shapes import peg, prism, tube
+from on_first_use import OnFirstUse
 from standoff.solids import Solid, SolidProximity
 from standoff.tracking.status import Status
 
 Array = np.ndarray
 STILL = so.Pose.identity()
-FEET = prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
-"""A bridge upside down: two feet at y = 1."""
-LID = Solid(so.shapes.box((6.0, 1.0, 4.0)))
-"""Over both feet: its lower face at y = -0.5."""
+
+
+@cache
+def feet() -> Solid:
+    """A bridge upside down: two feet at y = 1."""
+    return prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
+
+
+@cache
+def lid() -> Solid:
+    """Over both feet: its lower face at y = -0.5."""
+    return Solid(so.shapes.box((6.0, 1.0, 4.0)))
 
 
 def hull(seed: int) -> so.Body:
@@ -33,7 +44,7 @@ CONVEX = {
     "capsule": so.shapes.capsule(0.2, 0.6),
     "polytope": hull(2),
 }
-SOLIDS = {name: Solid(body) for name, body in CONVEX.items()}
+SOLIDS = OnFirstUse({name: partial(Solid, body) for name, body in CONVEX.items()})
 
 
 def pushed_in(a: so.Body, b: so.Body, depth: float, rng: np.random.Generator) -> so.Pose:
@@ -96,14 +107,14 @@ def test_most_overlaps_are_proven_to_be_parted_by_a_shift(rng: np.random.Generat
 @pytest.mark.parametrize("turn", [0.0, 1e-3, -0.02])
 def test_two_feet_have_a_depth_each(turn: float) -> None:
     pose = so.Pose.exp((0.0, 0.0, turn), (1.5, 1.49, 0.5))
-    told = so.solids.distance(FEET, LID, STILL, pose, minima=0.1)
+    told = so.solids.distance(feet(), lid(), STILL, pose, minima=0.1)
     check_claims(told)
     n = pose.rotation @ np.array([0.0, 1.0, 0.0])
     low = pose.translation - 0.5 * n
-    feet = [
+    deep = [
         min(n @ (np.array([x, 1.0, 0.0]) - low) * -1.0 for x in ends) for ends in ((0, 1), (2, 3))
     ]
-    assert sorted(depths(told)) == pytest.approx(sorted(feet), abs=1e-10)
+    assert sorted(depths(told)) == pytest.approx(sorted(deep), abs=1e-10)
     assert [m.normal for m in told.minima] == [pytest.approx(n, abs=1e-9)] * 2
     for each in told.minima:
         assert each.lower_bound == pytest.approx(each.distance, abs=1e-7)
@@ -111,7 +122,7 @@ def test_two_feet_have_a_depth_each(turn: float) -> None:
 
 def test_a_foot_that_stands_on_a_face_has_one_place_and_four_corners() -> None:
     pose = so.Pose(np.eye(3), [1.5, 1.49, 0.5])
-    told = so.solids.distance(FEET, LID, STILL, pose, minima=0.1, patch=1e-3)
+    told = so.solids.distance(feet(), lid(), STILL, pose, minima=0.1, patch=1e-3)
     assert depths(told) == pytest.approx([-0.01, -0.01])
     corners = {tuple(np.round(x, 9)[[0, 2]]) for each in told.minima for x, _ in each.patch}
     assert corners == {(float(x), float(z)) for x in (0, 1, 2, 3) for z in (0, 1)}
@@ -174,7 +185,7 @@ def bounce(frames: int) -> list[so.Pose]:
 
 def test_a_place_is_followed_through_contact() -> None:
     poses = bounce(241)
-    tracker = so.Tracker(FEET, LID, minima=0.1)
+    tracker = so.Tracker(feet(), lid(), minima=0.1)
     state = tracker.start(STILL, poses[0])
     _, answers = tracker.run(state, STILL, poses)
     met = np.array([status is Status.OVERLAPPING for status in answers.status])
@@ -191,7 +202,7 @@ def test_a_place_is_followed_through_contact() -> None:
     assert {event.kind for event in answers.events} <= {"switch", "handover"}
     for k in range(0, len(poses), 8):
         answer = answers[k]
-        cold = so.solids.distance(FEET, LID, STILL, poses[k], minima=0.1)
+        cold = so.solids.distance(feet(), lid(), STILL, poses[k], minima=0.1)
         assert answer.status is cold.status
         assert [m.distance for m in answer.minima] == pytest.approx(
             [m.distance for m in cold.minima], abs=1e-9
@@ -202,7 +213,7 @@ def test_a_place_is_followed_through_contact() -> None:
 
 def test_frames_one_by_one_are_those_of_a_run() -> None:
     poses = bounce(61)
-    tracker = so.Tracker(FEET, LID, minima=0.1)
+    tracker = so.Tracker(feet(), lid(), minima=0.1)
     state = start = tracker.start(STILL, poses[0])
     _, answers = tracker.run(start, STILL, poses)
     for k, pose in enumerate(poses):
@@ -214,7 +225,7 @@ def test_frames_one_by_one_are_those_of_a_run() -> None:
 
 def test_a_start_in_an_overlap_and_without_minima() -> None:
     poses = bounce(121)[60:]
-    tracker = so.Tracker(FEET, LID)
+    tracker = so.Tracker(feet(), lid())
     state = tracker.start(STILL, poses[0])
     assert state.proximity.status is Status.OVERLAPPING
     _, answers = tracker.run(state, STILL, poses)
@@ -223,16 +234,16 @@ def test_a_start_in_an_overlap_and_without_minima() -> None:
     assert answers[0].minima[0].distance < 0.0
     assert not answers.restarts.any()
     for k in range(0, len(poses), 6):
-        cold = so.distance(FEET, LID, STILL, poses[k])
+        cold = so.distance(feet(), lid(), STILL, poses[k])
         assert answers[k].status is cold.status
         assert answers[k].minima[0].distance == pytest.approx(cold.minima[0].distance, abs=1e-9)
 
 
 def test_an_overlap_too_deep_for_places_is_still_told() -> None:
-    told = so.distance(FEET, LID, STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
+    told = so.distance(feet(), lid(), STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
     assert told.status is Status.OVERLAPPING
     assert told.distance == -2.0 * told.overlap.radius
-    tracker = so.Tracker(FEET, LID)
+    tracker = so.Tracker(feet(), lid())
     state = tracker.start(STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
     _, answer = tracker.step(state, STILL, so.Pose(np.eye(3), [1.5, 0.31, 0.5]))
     assert answer.status is Status.OVERLAPPING

@@ -9,6 +9,7 @@ import scipy
 import standoff as so
 from draws import draws
 from families.solid_shapes import bracket, egg, peg, ring, tube
+from on_first_use import OnFirstUse
 from standoff.kernels.entries.solid_contact import pieces_parted
 from standoff.kernels.entries.solids import nearest_in_leaves
 from standoff.kernels.solids import spatial_progress as C
@@ -20,13 +21,15 @@ from standoff.solids.spatial.points import depth_beside, signed_distances
 from standoff.solids.spatial.solid_model import SolidModel
 
 Array = np.ndarray
-SOLIDS = {
-    "bracket": bracket(),
-    "egg": egg(0.9, 0.6, 0.4),
-    "ring": ring(1.0, 0.25),
-    "tube": tube(0.5, 0.8, 0.0, 0.6),
-    "peg": peg(0.3, -1.0, 1.0),
-}
+SOLIDS = OnFirstUse(
+    {
+        "bracket": lambda: bracket(),
+        "egg": lambda: egg(0.9, 0.6, 0.4),
+        "ring": lambda: ring(1.0, 0.25),
+        "tube": lambda: tube(0.5, 0.8, 0.0, 0.6),
+        "peg": lambda: peg(0.3, -1.0, 1.0),
+    }
+)
 
 
 @pytest.mark.parametrize("name", SOLIDS)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -90,8 +92,15 @@ def test_each_foot_has_its_own() -> None:
         assert corners(each.patch) == pytest.approx(np.array(expected), abs=1e-9)
 
 
-SHAPES = [bracket(), bolt(), egg(0.9, 0.6, 0.4), FEET, peg(0.4, -1.0, 1.0), ring(1.0, 0.25),
-          tube(0.5, 0.8, 0.0, 0.6)]  # fmt: skip
+SHAPES = [
+    bracket,
+    bolt,
+    partial(egg, 0.9, 0.6, 0.4),
+    lambda: FEET,
+    partial(peg, 0.4, -1.0, 1.0),
+    partial(ring, 1.0, 0.25),
+    partial(tube, 0.5, 0.8, 0.0, 0.6),
+]
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -99,7 +108,7 @@ def test_pairs_of_a_patch_are_on_both_and_hardly_farther_apart(seed: int) -> Non
     rng = np.random.default_rng(seed)
     several = 0
     for _ in range(12):
-        a, b = (SHAPES[k] for k in rng.integers(len(SHAPES), size=2))
+        a, b = (SHAPES[k]() for k in rng.integers(len(SHAPES), size=2))
         way = rng.normal(size=3)
         turn = turned("xyz", rng.choice([0.0, 1e-3, 1.0]) * rng.normal(size=3))
         pose = placed(turn, 0.5 * (a.size + b.size) * way / np.linalg.norm(way))

@@ -3,6 +3,8 @@ of all places of contact and of what stays open."""
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -10,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.solid_shapes import ball, bolt, bracket, peg, prism, samples, tube
-from standoff.solids import SolidProximity, distance
+from standoff.solids import Solid, SolidProximity, distance
 from standoff.solids.spatial import distance as spatial_distance_module
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -30,10 +32,24 @@ def comb(depths: tuple[float, ...]):
     return prism([*outline, (n + 0.4, 1.0), (0.0, 1.0)], 0.5)
 
 
-SLAB = prism([(-2.0, -1.0), (5.0, -1.0), (5.0, -0.1), (-2.0, -0.1)], 3.0)
-SLOT = prism([(-1, -1), (3, -1), (3, 2), (2, 2), (2, 0), (0, 0), (0, 2), (-1, 2)], 3.0)
-GROOVE = prism([(-2, -1), (2, -1), (2, 1), (1, 1), (0, 0), (-1, 1), (-2, 1)], 3.0)
-WEDGE = prism([(0, 0), (0.8, 0.8), (0.8, 1.8), (-0.8, 1.8), (-0.8, 0.8)], 1.0)
+@cache
+def slab() -> Solid:
+    return prism([(-2.0, -1.0), (5.0, -1.0), (5.0, -0.1), (-2.0, -0.1)], 3.0)
+
+
+@cache
+def slot() -> Solid:
+    return prism([(-1, -1), (3, -1), (3, 2), (2, 2), (2, 0), (0, 0), (0, 2), (-1, 2)], 3.0)
+
+
+@cache
+def groove() -> Solid:
+    return prism([(-2, -1), (2, -1), (2, 1), (1, 1), (0, 0), (-1, 1), (-2, 1)], 3.0)
+
+
+@cache
+def wedge() -> Solid:
+    return prism([(0, 0), (0.8, 0.8), (0.8, 1.8), (-0.8, 1.8), (-0.8, 0.8)], 1.0)
 
 
 def well_made(answer: SolidProximity, tolerance: float) -> None:
@@ -51,22 +67,22 @@ def well_made(answer: SolidProximity, tolerance: float) -> None:
 
 def test_a_comb_over_a_plane_has_a_minimum_for_each_tooth() -> None:
     teeth = comb((0.0, 0.05, 0.02))
-    answer = distance(SLAB, teeth, STILL, so.Pose(STRAIGHT, (0, 0, 1.2)), minima=0.3)
+    answer = distance(slab(), teeth, STILL, so.Pose(STRAIGHT, (0, 0, 1.2)), minima=0.3)
     found = [each.distance for each in answer.minima]
     np.testing.assert_allclose(found, [0.1, 0.12, 0.15], atol=1e-12)
-    well_made(answer, 1e-10 * (SLAB.size + teeth.size))
+    well_made(answer, 1e-10 * (slab().size + teeth.size))
     for each in answer.minima:
         np.testing.assert_allclose(each.normal, [0, 1, 0], atol=1e-9)
     tooth = np.floor([m.point_b[0] for m in answer.minima])
     np.testing.assert_array_equal(tooth, [0, 2, 1])
-    fewer = distance(SLAB, teeth, STILL, so.Pose(STRAIGHT, (0, 0, 1.2)), minima=0.13)
+    fewer = distance(slab(), teeth, STILL, so.Pose(STRAIGHT, (0, 0, 1.2)), minima=0.13)
     assert [m.distance for m in fewer.minima] == pytest.approx([0.1, 0.12], abs=1e-12)
 
 
 def test_a_ball_in_a_slot_has_a_minimum_at_each_wall() -> None:
     pose = so.Pose(STRAIGHT, (0.9, 0.8, 1.5))
-    answer = distance(SLOT, ball(0.4), STILL, pose, minima=0.9)
-    well_made(answer, 1e-10 * (SLOT.size + ball(0.4).size))
+    answer = distance(slot(), ball(0.4), STILL, pose, minima=0.9)
+    well_made(answer, 1e-10 * (slot().size + ball(0.4).size))
     assert [m.distance for m in answer.minima] == pytest.approx([0.4, 0.5, 0.7], abs=1e-12)
     assert {m.feature_a.kind for m in answer.minima} == {"face"}
     feet = [m.point_a for m in answer.minima]
@@ -131,7 +147,7 @@ def test_local_minima_of_turned_parts_are_proven() -> None:
 
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-6, 1e-12])
 def test_a_tolerance_is_what_the_distance_is_proven_to(tolerance: float) -> None:
-    a, b = SLOT, ball(0.4)
+    a, b = slot(), ball(0.4)
     pose = so.Pose(STRAIGHT, (0.9, 0.8, 1.5))
     usual = distance(a, b, STILL, pose)
     answer = distance(a, b, STILL, pose, tolerance=tolerance)
@@ -172,7 +188,7 @@ def test_a_deadline_leaves_open_what_holds_the_nearest_pair(deadline: int) -> No
 
 def test_what_is_open_says_what_is_proven() -> None:
     at = so.Pose(STRAIGHT, (0.9, 0.8, 1.5))
-    answer = distance(SLOT, ball(0.4), STILL, at, deadline=100)
+    answer = distance(slot(), ball(0.4), STILL, at, deadline=100)
     assert answer.status is Status.DEADLINE
     assert answer.counts.open == len(answer.open) > 0
     assert all(each.corners_a.shape == each.corners_b.shape == (8, 3) for each in answer.open)
@@ -198,24 +214,24 @@ def test_the_deadline_is_the_same_in_the_plane() -> None:
 
 
 def test_a_wedge_in_a_groove_touches_both_flanks() -> None:
-    answer = distance(GROOVE, WEDGE, STILL, so.Pose(STRAIGHT, (0, 0, 1)))
+    answer = distance(groove(), wedge(), STILL, so.Pose(STRAIGHT, (0, 0, 1)))
     assert answer.status is Status.TOUCHING
     assert answer.lower_bound > -1e-8
     assert abs(answer.distance) < 1e-12
     flanks = {tuple(np.round(m.normal, 6)) for m in answer.minima if m.feature_a.kind == "face"}
     h = round(np.sqrt(0.5), 6)
     assert {(h, h, 0.0), (-h, h, 0.0)} <= flanks
-    lifted = distance(GROOVE, WEDGE, STILL, so.Pose(STRAIGHT, (0, 1e-3, 1)))
+    lifted = distance(groove(), wedge(), STILL, so.Pose(STRAIGHT, (0, 1e-3, 1)))
     assert lifted.status is Status.CONTINUUM
     assert lifted.distance == pytest.approx(1e-3 * np.sqrt(0.5), abs=1e-12)
-    sunk = distance(GROOVE, WEDGE, STILL, so.Pose(STRAIGHT, (0, -1e-2, 1)))
+    sunk = distance(groove(), wedge(), STILL, so.Pose(STRAIGHT, (0, -1e-2, 1)))
     assert sunk.status is Status.OVERLAPPING
 
 
 def test_a_ball_in_a_groove_touches_at_two_points() -> None:
     turn = Rotation.from_euler("xyz", [0.3, -0.8, 1.1]).as_matrix()
     centre = turn @ [0.0, 0.5 * np.sqrt(2.0), 1.0]
-    answer = distance(GROOVE, ball(0.5), so.Pose(turn, (0, 0, 0)), so.Pose(STRAIGHT, centre))
+    answer = distance(groove(), ball(0.5), so.Pose(turn, (0, 0, 0)), so.Pose(STRAIGHT, centre))
     assert answer.status is Status.TOUCHING
     assert len(answer.minima) == 2
     assert answer.smoothness is Smoothness.ONE_SIDED

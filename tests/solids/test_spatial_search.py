@@ -8,18 +8,21 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from families.solid_shapes import ball, bolt, bracket, egg, ring, samples, tube
+from on_first_use import OnFirstUse
 from standoff.kernels.solids import spatial_progress as C
 from standoff.solids import Solid
 from standoff.solids.spatial import minimum
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
 
-SOLIDS = {
-    "bolt": bolt(),
-    "tube": tube(0.5, 0.8, -0.6, 0.6),
-    "bracket": bracket(),
-    "ball": ball(0.8),
-}
+SOLIDS = OnFirstUse(
+    {
+        "bolt": bolt,
+        "tube": lambda: tube(0.5, 0.8, -0.6, 0.6),
+        "bracket": bracket,
+        "ball": lambda: ball(0.8),
+    }
+)
 PAIRS = [("bolt", "bracket"), ("tube", "bolt"), ("bracket", "ball")]
 POSES, MORE = 5, 60
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from benchmarks.solids import drawn, posed
@@ -9,18 +11,27 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.solid_shapes import bracket, egg, peg, prism, ring, tube
-from standoff.solids import SolidProximity
+from on_first_use import OnFirstUse
+from standoff.solids import Solid, SolidProximity
 
 Array = np.ndarray
 STILL = np.eye(4)
-TABLE = prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
-"""A bridge upside down: two feet at y = 1."""
-CASES = {
-    "bracket, bracket": (bracket(), bracket(), 1.2, [0.79, -1.17, 1.05]),
-    "feet, egg": (TABLE, egg(0.9, 0.6, 0.4), 1.2, [1.17, 1.63, 1.68]),
-    "tube, peg": (tube(1.2, 2.0, 0.0, 1.0), peg(0.3, -1.0, 1.0), 1.1, [0.3, 0.1, 0.5]),
-    "feet, tube": (TABLE, tube(0.5, 0.8, 0.0, 0.6), 0.8, [1.99, 0.85, -1.28]),
-}
+
+
+@cache
+def table() -> Solid:
+    """A bridge upside down: two feet at y = 1."""
+    return prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
+
+
+CASES = OnFirstUse(
+    {
+        "bracket, bracket": lambda: (bracket(), bracket(), 1.2, [0.79, -1.17, 1.05]),
+        "feet, egg": lambda: (table(), egg(0.9, 0.6, 0.4), 1.2, [1.17, 1.63, 1.68]),
+        "tube, peg": lambda: (tube(1.2, 2.0, 0.0, 1.0), peg(0.3, -1.0, 1.0), 1.1, [0.3, 0.1, 0.5]),
+        "feet, tube": lambda: (table(), tube(0.5, 0.8, 0.0, 0.6), 0.8, [1.99, 0.85, -1.28]),
+    }
+)
 
 
 def placed(turn: Array, shift: Array) -> Array:
@@ -97,7 +108,7 @@ def test_minima_come_and_go() -> None:
     ball = so.shapes.sphere(0.3)
     xs = np.linspace(0.2, 2.8, 54)
     poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in xs])
-    tracker = so.Tracker(TABLE, ball, minima=0.75)
+    tracker = so.Tracker(table(), ball, minima=0.75)
     _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
     for x, answer in zip(xs, answers, strict=True):
         # over a foot, or beside its edge; and the floor between both, 1 below the middle
@@ -114,10 +125,10 @@ def test_a_frame_without_time_for_all_minima_says_so() -> None:
     ball = so.shapes.sphere(0.3)
     xs = np.linspace(0.4, 1.4, 24)
     poses = np.array([placed(np.eye(3), [x, 1.5, 0.5]) for x in xs])
-    tracker = so.Tracker(TABLE, ball, minima=0.75)
+    tracker = so.Tracker(table(), ball, minima=0.75)
     state = tracker.start(STILL, poses[0])
     assert len(state.proximity.minima) == 1
-    hasty = so.Tracker(TABLE, ball, minima=0.75, deadline=12)
+    hasty = so.Tracker(table(), ball, minima=0.75, deadline=12)
     _, answers = hasty.run(state, STILL, poses)
     few = [answer for x, answer in zip(xs, answers, strict=True) if x > 1.1]
     assert {answer.status for answer in few if len(answer.minima) < 3} == {so.Status.DEADLINE}
@@ -126,7 +137,7 @@ def test_a_frame_without_time_for_all_minima_says_so() -> None:
     assert found.certified
     assert len(found.minima) == 3
     # no time at all: what was followed before is followed on
-    none = so.Tracker(TABLE, ball, minima=0.75, deadline=1)
+    none = so.Tracker(table(), ball, minima=0.75, deadline=1)
     state, found = none.step(state, STILL, poses[-1])
     assert found.status is so.Status.DEADLINE
     assert len(found.minima) == len(state.proximity.minima)
@@ -135,25 +146,27 @@ def test_a_frame_without_time_for_all_minima_says_so() -> None:
 def test_what_is_asked_of_minima_is_checked() -> None:
     for wrong in (0.0, -1.0, np.nan):
         with pytest.raises(so.StandoffError, match="minima"):
-            so.Tracker(TABLE, peg(0.4, -1.0, 1.0), minima=wrong)
+            so.Tracker(table(), peg(0.4, -1.0, 1.0), minima=wrong)
 
 
 def test_vertices_are_minima_where_all_ways_lead_off() -> None:
     """A ball beside the gap of two feet, in front of them: a corner of each, and none else."""
     ball = so.shapes.sphere(0.1)
     pose = placed(np.eye(3), [1.52, 1.3, 1.4])
-    found = so.solids.distance(TABLE, ball, STILL, pose, minima=0.7)
+    found = so.solids.distance(table(), ball, STILL, pose, minima=0.7)
     expected = [np.hypot(x, 0.5) - 0.1 for x in (0.48, 0.52)]
     assert [m.distance for m in found.minima] == pytest.approx(expected, abs=1e-9)
     assert {m.feature_a.kind for m in found.minima} == {"vertex"}
 
 
-STEPPED = drawn(15, np.random.default_rng(1))
-"""A turned part, each of whose steps has a minimum to a foot of the table."""
+@cache
+def stepped() -> Solid:
+    """A turned part, each of whose steps has a minimum to a foot of the table."""
+    return drawn(15, np.random.default_rng(1))
 
 
 def stepping() -> Array:
-    """Poses of `STEPPED` at which its minima pass from leaf to leaf."""
+    """Poses of `stepped` at which its minima pass from leaf to leaf."""
     turn = Rotation.from_rotvec([-1.47119, 0.70328, -0.65758]).as_matrix()
     by = Rotation.from_rotvec([3.99e-4, -1.285e-3, 2.356e-3]).as_matrix()
     poses = [placed(turn, [0.22098, 0.19456, -3.17058])]
@@ -167,7 +180,7 @@ def test_no_plane_shuts_out_a_minimum_that_is_asked() -> None:
     """What a plane's face leaves out is farther than the minima, not than the nearest points; and
     of a state of a tracker that asked less, nothing of that is taken over."""
     poses, below = stepping(), 3.4
-    all_of_them, few = (so.Tracker(TABLE, STEPPED, minima=each) for each in (below, 2.906))
+    all_of_them, few = (so.Tracker(table(), stepped(), minima=each) for each in (below, 2.906))
     _, answers = all_of_them.run(all_of_them.start(STILL, poses[0]), STILL, poses)
     assert {len(answer.minima) for answer in answers} == {6}
     state, answers = few.run(few.start(STILL, poses[0]), STILL, poses[:15])
@@ -183,7 +196,7 @@ def test_no_plane_shuts_out_a_minimum_that_is_asked() -> None:
 def test_no_minimum_is_lost_in_drawn_motions(seed: int) -> None:
     """Of turned parts with many edges, whose leaves their minima pass through."""
     rng = np.random.default_rng(seed)
-    shapes = [TABLE, bracket(), drawn(15, rng), drawn(9, rng), tube(1.2, 2.0, 0.0, 1.0)]
+    shapes = [table(), bracket(), drawn(15, rng), drawn(9, rng), tube(1.2, 2.0, 0.0, 1.0)]
     several = 0
     for _ in range(8):
         a, b = (shapes[k] for k in rng.choice([[0, 2], [1, 2], [2, 3], [4, 3], [0, 4]]))

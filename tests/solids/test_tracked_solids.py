@@ -12,19 +12,22 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from families.solid_shapes import ball, bolt, bracket, egg, peg, prism, ring, socket, tube
+from on_first_use import OnFirstUse
 from standoff.solids import Solid, SolidAnswers, SolidState, SolidTracker
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.tracked import front
 
 Array = np.ndarray
 STILL = np.eye(4)
-PAIRS = {
-    "bracket, bracket": (bracket(), bracket()),
-    "bolt, tube": (bolt(), tube(1.2, 2.0, 0.0, 1.0)),
-    "ring, peg": (ring(1.0, 0.25), peg(0.3, -1.0, 1.0)),
-    "egg, bracket": (egg(0.9, 0.6, 0.4), bracket()),
-    "tube, tube": (tube(0.5, 0.8, 0.0, 0.6), tube(0.5, 0.8, 0.0, 0.6)),
-}
+PAIRS = OnFirstUse(
+    {
+        "bracket, bracket": lambda: (bracket(), bracket()),
+        "bolt, tube": lambda: (bolt(), tube(1.2, 2.0, 0.0, 1.0)),
+        "ring, peg": lambda: (ring(1.0, 0.25), peg(0.3, -1.0, 1.0)),
+        "egg, bracket": lambda: (egg(0.9, 0.6, 0.4), bracket()),
+        "tube, tube": lambda: (tube(0.5, 0.8, 0.0, 0.6), tube(0.5, 0.8, 0.0, 0.6)),
+    }
+)
 
 
 LITTLE, ONE_LOOK = 30, 100

@@ -21,7 +21,18 @@ from shares import share
 from standoff_studies import oracles as oracle
 
 HOME = np.eye(4)
-LEVELS = [(name, level) for name, kind in KINDS.items() for level in kind.levels]
+
+
+def every_other(first):
+    """All levels of all kinds; in every run one of two, apart those that are not in overlap."""
+    return [
+        pytest.param(name, level, marks=[] if tried else [pytest.mark.soak])
+        for name, kind in KINDS.items()
+        for k, level in enumerate(kind.levels)
+        for tried in [k % 2 == first or len(kind.levels) == 1]
+    ]
+
+
 OPEN = {
     ("thin superellipsoid", 1e4): 0.15,
     ("thin NURBS ellipsoid", 1e2): 0.1,
@@ -61,7 +72,7 @@ def test_the_judge_sees_what_is_wrong(rng):
     assert "witness points miss" in faults(pose, moved)[0]
 
 
-@pytest.mark.parametrize(("name", "level"), LEVELS)
+@pytest.mark.parametrize(("name", "level"), every_other(0))
 def test_apart(name, level, rng):
     tally = run(name, level, POSES, rng)
     assert not tally.failures
@@ -212,7 +223,7 @@ def test_missing_twists(rng):
         assert known or np.isnan(answer.rate)
 
 
-@pytest.mark.parametrize(("name", "level"), LEVELS)
+@pytest.mark.parametrize(("name", "level"), every_other(1))
 def test_overlapping(name, level, rng):
     """Sunk along a normal by 1e-9 to 1e-1 of the thickness there: never deeper than that."""
     tally = run(name, level, POSES, rng, how="sunk")
@@ -266,8 +277,7 @@ def test_wrong_twists_in_penetration(factor):
         assert np.isfinite([*answer.point_a, *answer.normal]).all()
 
 
-@pytest.mark.parametrize("twists", [True, False])
-@pytest.mark.parametrize("name", sorted(KINDS))
+@pytest.mark.parametrize(("name", "twists"), share(2, sorted(KINDS), [True, False]))
 def test_motion(name, twists, rng):
     """Past edges, seams, poles and through contact, with twists and without."""
     level = KINDS[name].levels[-1]

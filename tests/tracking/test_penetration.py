@@ -65,8 +65,7 @@ def test_cold_depth_is_the_least(name, rng):
     assert missed <= (0 if name == "ellipsoids" else MISSED)
 
 
-@pytest.mark.parametrize("depth", ["global", "local"])
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize(("name", "depth"), share(2, KINDS, ["global", "local"]))
 def test_tracked_into_depth(name, depth, rng):
     """Global: as deep as the reference; local: never less deep, and it says LOCAL or proves it."""
     missed, wrong = 0, []

@@ -11,6 +11,8 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from draws import draws
+from on_first_use import OnFirstUse
+from shares import share
 from standoff.geometry.ellipsoid_patches import ellipsoid_octants, ellipsoid_patches
 from standoff.kernels.compiler.calls import CAN_CALL
 from standoff.kernels.state import arrays as K
@@ -31,22 +33,29 @@ def of_degree(degree: int, axes: tuple[float, float, float]) -> so.Body:
 
 
 AHEAD = {
-    "ellipsoids": (so.shapes.ellipsoid(*AXES[0]), TOOL),
-    "lens, ellipsoid": (LENS, TOOL),
-    "lenses": (LENS, so.shapes.lens(0.7, 0.3)),
-    "box, ellipsoid": (BOX, TOOL),
-    "ellipsoid, box": (TOOL, BOX),
+    "ellipsoids": lambda: (so.shapes.ellipsoid(*AXES[0]), TOOL),
+    "lens, ellipsoid": lambda: (LENS, TOOL),
+    "lenses": lambda: (LENS, so.shapes.lens(0.7, 0.3)),
+    "box, ellipsoid": lambda: (BOX, TOOL),
+    "ellipsoid, box": lambda: (TOOL, BOX),
     **{
-        f"NURBS of degree {n}": (of_degree(n, AXES[0]), of_degree(n, AXES[1])) for n in (2, 3, 4, 5)
+        f"NURBS of degree {n}": lambda n=n: (of_degree(n, AXES[0]), of_degree(n, AXES[1]))
+        for n in (2, 3, 4, 5)
     },
 }
 ON_DEMAND = {
-    "cylinder, ellipsoid": (CYLINDER, TOOL),
-    "superellipsoid, ellipsoid": (so.shapes.superellipsoid(0.5, 0.7, 0.9, 0.6, 1.3), TOOL),
-    "cone, ellipsoid": (so.shapes.cone(0.4, 0.8), TOOL),
-    "swept lens, NURBS": (so.shapes.lens(1.0, 0.45, rounding=0.05), of_degree(3, AXES[1])),
+    "cylinder, ellipsoid": lambda: (CYLINDER, TOOL),
+    "superellipsoid, ellipsoid": lambda: (
+        so.shapes.superellipsoid(0.5, 0.7, 0.9, 0.6, 1.3),
+        TOOL,
+    ),
+    "cone, ellipsoid": lambda: (so.shapes.cone(0.4, 0.8), TOOL),
+    "swept lens, NURBS": lambda: (
+        so.shapes.lens(1.0, 0.45, rounding=0.05),
+        of_degree(3, AXES[1]),
+    ),
 }
-PAIRS = AHEAD | ON_DEMAND
+PAIRS = OnFirstUse(AHEAD | ON_DEMAND)
 DIGITS = 1e-14
 """Of the size: both round, not alike."""
 
@@ -87,8 +96,9 @@ def agree(smooth: so.Proximity, general: so.Proximity, size: float) -> None:
         np.testing.assert_allclose(one, other, rtol=1e-8, atol=1e-8, err_msg=name)
 
 
-@pytest.mark.parametrize("law", [so.PredictorCorrector(), so.PredictorCorrector(deadline=3)])
-@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize(
+    ("pair", "law"), share(2, PAIRS, [so.PredictorCorrector(), so.PredictorCorrector(deadline=3)])
+)
 def test_it_answers_as_the_general_frame(
     pair: str, law: so.PredictorCorrector, rng: np.random.Generator
 ) -> None:
@@ -153,13 +163,13 @@ def test_it_answers_on_straight_edges_too(pair: str, rng: np.random.Generator) -
 
 @pytest.mark.parametrize("pair", AHEAD)
 def test_a_pair_of_the_list_has_it_without_asking(pair: str) -> None:
-    a, b = AHEAD[pair]
+    a, b = PAIRS[pair]
     assert smooth_frame_of(a, b, None) in COMPILED_AHEAD.values()
 
 
 @pytest.mark.parametrize("pair", ON_DEMAND)
 def test_any_other_pair_has_it_on_demand(pair: str) -> None:
-    a, b = ON_DEMAND[pair]
+    a, b = PAIRS[pair]
     assert smooth_frame_of(a, b, None) is None
     assert smooth_frame_of(a, b, True) is not None
     assert smooth_frame_of(a, b, True) is smooth_frame_of(a, b, True)
@@ -185,7 +195,7 @@ def test_general_frames_are_counted_and_nothing_is_written_before_them() -> None
 
 
 def test_the_papers_law_has_none() -> None:
-    tracker = so.Tracker(*AHEAD["ellipsoids"], 1e-3, so.PaperLaw(gain=100.0))
+    tracker = so.Tracker(*PAIRS["ellipsoids"], 1e-3, so.PaperLaw(gain=100.0))
     pose = np.eye(4)
     pose[0, 3] = 2.0
     _, answer = tracker.step(tracker.start(REST, pose), REST, pose)
@@ -196,13 +206,13 @@ def test_the_papers_law_has_none() -> None:
 @pytest.mark.parametrize("specialise", [1, "yes", np.True_])
 def test_what_is_no_choice_is_told(specialise: Any) -> None:
     with pytest.raises(TypeError, match="is neither True"):
-        so.Tracker(*AHEAD["ellipsoids"], specialise=specialise)
+        so.Tracker(*PAIRS["ellipsoids"], specialise=specialise)
 
 
 def test_a_tracker_in_another_process_finds_its_own() -> None:
     """A pickle holds no address."""
     import pickle
 
-    tracker = so.Tracker(*AHEAD["ellipsoids"], 1e-3)
+    tracker = so.Tracker(*PAIRS["ellipsoids"], 1e-3)
     again = pickle.loads(pickle.dumps(tracker))
     assert again.options[K.O_SMOOTH] == tracker.options[K.O_SMOOTH] != 0.0
