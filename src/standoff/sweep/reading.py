@@ -19,6 +19,7 @@ from standoff.sweep.samplers import (
     Sampler,
     SobolSampler,
 )
+from standoff.sweep.shape_tables import with_shapes
 from standoff.sweep.subject_tables import SUBJECT_KEYS, read_subject
 from standoff.whole_files import file_name
 from standoff.wording import counted, printable
@@ -84,6 +85,7 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     subject, title = read_subject(top)
     kind, table = _sampler_table(top)
     parameters = read_parameters(top, subject, kind)
+    subject = with_shapes(top, subject, parameters, kind)
     source, rows, seed = _source(table, kind, parameters)
     return Job(
         file=path,

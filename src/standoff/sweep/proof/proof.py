@@ -15,7 +15,8 @@ from standoff.sweep.job import Job, check_job, digest_of
 from standoff.sweep.parameters import UNIFORM, Parameter
 from standoff.sweep.proof.box import ParameterBox
 from standoff.sweep.proof.cells import Cells
-from standoff.sweep.proof.pair_box import PairBox, PlacedBody
+from standoff.sweep.proof.mover import PlacedBody
+from standoff.sweep.proof.pair_box import PairBox
 from standoff.sweep.proof.robot_box import RobotBox
 from standoff.sweep.proof.search import search
 from standoff.sweep.proof.summary import ProofSummary
@@ -147,11 +148,9 @@ def _box(job: Job, clearance: float) -> ParameterBox:
         return WorldBox(job.subject, job.parameters, clearance)
     if isinstance(job.subject, ConvexPair):
         subject = job.subject
-        placed = [
-            PlacedBody(*each)
-            for each in zip(subject.scene.pair, subject.bodies, subject.homes, strict=True)
-        ]
-        _check_planes({name: body for name, body, _ in placed}, job.parameters)
+        given = (subject.scene.pair, subject.bodies, subject.homes, subject.shaped)
+        placed = [PlacedBody(*each) for each in zip(*given, strict=True)]
+        _check_planes({each.name: each.body for each in placed}, job.parameters)
         return PairBox((placed[0], placed[1]), job.parameters, clearance)
     raise StandoffError(
         f"a proof is of convex bodies or of a robot, and {job.subject.name} need not be convex",
