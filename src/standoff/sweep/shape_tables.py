@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 
+from standoff.checks.names import one_of
 from standoff.errors import StandoffError
 from standoff.scene import Scene
 from standoff.scene.files import toml_tables
@@ -42,8 +43,11 @@ def shape_parameter(name: str, table: Table, subject: Subject) -> Parameter:
             "'shape' in the scene",
             "shapes",
         )
-    noun = f"number of {own.text('shape')} '{body}'"
-    what = table.choice("what", shape_numbers(own), noun=noun)
+    known, what = shape_numbers(own), table.text("what", example='what = "radius"')
+    several = [one for one in known if "." in one and what.startswith(one.partition(".")[0])]
+    if several and what not in known:
+        raise table.error(f"'{what}' is none of its numbers: write {one_of(several)}", "what")
+    table.choice("what", known, noun=f"number of {own.text('shape')} '{body}'")
     return Parameter(name, body, what, shape=True)
 
 

@@ -18,9 +18,9 @@ from standoff.sweep.subjects.shaped_body import ShapedBody
 
 Array = NDArray[np.float64]
 
-SIDE = 6
-"""Directions along each side of a cube, as of `extent`: 216 in all, some 15 degrees apart. They are
-for choosing what to halve, and prove nothing."""
+SIDE = 7
+"""Directions along each side of a cube, as of `extent`: 294 in all, some 13 degrees apart, the axes
+among them. They are for choosing what to halve, and prove nothing."""
 
 
 class Growth:

@@ -225,11 +225,10 @@ class PairBox(ParameterBox):
             given = mover.given_up(outward, points[k] - pose[:, :3, 3], at, half, radii[k])
             if mover.growth is not None:
                 seen = np.matmul(outward[:, None, :], pose[:, :3, :3])[:, 0]
+                rates = mover.growth.along(np.where(known[:, None], seen, 0.0))
+                rates = np.where(known[:, None], rates, mover.growth.most)
                 own = mover.growth.columns
-                ways[:, own] = half[:, own] * mover.growth.along(
-                    np.where(known[:, None], seen, 0.0)
-                )
-                moved[:, own] = half[:, own] * mover.growth.most
+                ways[:, own] = moved[:, own] = half[:, own] * rates
             together = given.pop(TOGETHER, None)
             for k, way in given.items():
                 ways[:, k] = way
