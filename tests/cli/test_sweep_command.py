@@ -344,12 +344,11 @@ def test_the_page(standoff: Standoff, job: Path, tmp_path: Path) -> None:
 def test_the_page_lists_rows_that_are_not_certified(job: Path) -> None:
     from standoff.sweep.page import page_of
     from standoff.sweep.report import Report
-    from standoff.sweep.work import of_rows
 
     text = JOB.replace("rows = 3000", "rows = 40").replace("worst = 40", "worst = 1")
     job.write_text(text, encoding="utf-8")
     small = load_job(job)
-    found = of_rows(small, 0, 40)
+    found = small.kept(0, 40)
     rows = small.answers(7, 8)
     found.uncertified.add(rows._replace(status=rows.status * 0 + 3))
     told = page_of(Report(small, found))

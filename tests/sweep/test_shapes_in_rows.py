@@ -13,7 +13,7 @@ from standoff.errors import StandoffError
 from standoff.scene import SceneError
 from standoff.scene.shapes import NUMBERS, SHAPES, read_body
 from standoff.solids import save_boundary
-from standoff.sweep import work as works
+from standoff.sweep import job as jobs
 from standoff.sweep.subjects.shaped_body import shape_numbers
 from sweep.conftest import Make
 from sweep.shape_jobs import SHAPE_JOB, TABLES, TOOL_AND_BALL, shaped_of, table_of
@@ -77,11 +77,11 @@ def test_rows_computed_together_in_any_way_are_the_same(
     make: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     job = make(SHAPE_JOB, TOOL_AND_BALL)
-    facts = works.of_rows(job, 0, 60).facts()
-    monkeypatch.setattr(works, "BLOCK", 7)
+    facts = job.kept(0, 60).facts()
+    monkeypatch.setattr(jobs, "BLOCK", 7)
     again = make(SHAPE_JOB, TOOL_AND_BALL)
     assert again.digest == job.digest
-    assert works.of_rows(again, 0, 60).facts() == facts
+    assert again.kept(0, 60).facts() == facts
 
 
 def test_balls_come_nearer_by_what_their_radii_grow(make: Make) -> None:

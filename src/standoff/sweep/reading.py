@@ -7,7 +7,8 @@ import os
 from standoff.scene import SceneError
 from standoff.scene.files import existing_file, text_of, toml_tables
 from standoff.scene.reader import Table, shown
-from standoff.sweep.job import Bins, Job, Keep
+from standoff.sweep.job import Job
+from standoff.sweep.keep import Bins, Keep
 from standoff.sweep.parameter_tables import read_parameters
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.effort import effort_of
