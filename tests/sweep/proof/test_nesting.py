@@ -32,7 +32,7 @@ def two_of(shape: str, what: str, rng: np.random.Generator) -> tuple[np.ndarray,
         key, _, entry = own.partition(".")
         given = table.required(key, "") if key in table else {"taper": 0.4}.get(key, 0.1)
         usual = 1.0 if key == "scale" else float(given[int(entry) - 1] if entry else given)
-        ends = np.sort(usual * rng.uniform(0.8, 1.2, 2))
+        ends = usual * rng.uniform([0.8, 1.05], [0.95, 1.2])
         low.append(ends[0])
         high.append(ends[1] if own == what else ends[0])
     return reach(shaped.made(tuple(low))), reach(shaped.made(tuple(high)))
@@ -43,7 +43,7 @@ ALL = [(shape, what) for shape in TABLES for what in shape_numbers(table_of(shap
 
 @pytest.mark.parametrize(("shape", "what"), [x for x in ALL if sense_of(*x) is not None])
 def test_the_larger_body_holds_the_smaller(shape: str, what: str, rng: np.random.Generator) -> None:
-    for _ in range(2 if shape in ("spindle", "gore", "egg", "lens") else 5):
+    for _ in range(1 if shape in ("spindle", "gore", "egg", "lens") else 3):
         less, more = two_of(shape, what, rng)
         grown = sense_of(shape, what) * (more - less)
         assert grown.min() >= -ROUNDOFF

@@ -139,7 +139,7 @@ def test_no_sample_contradicts_a_cell(name: str, make: Make, rng: np.random.Gene
     for kind in (Kind.PROVEN, Kind.VIOLATED):
         own = np.flatnonzero(kinds == kind)
         # large cells are where a bound that is too good is seen
-        drawn = rng.choice(own, 40, p=sizes[own] / sizes[own].sum())
+        drawn = rng.choice(own, 24, p=sizes[own] / sizes[own].sum())
         some = cells.at(drawn)
         way = rng.choice([-1.0, 1.0], some.place.shape)
         way[::2] = rng.uniform(-1.0, 1.0, way[::2].shape)
