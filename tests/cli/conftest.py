@@ -9,6 +9,7 @@ from typing import NamedTuple
 import pytest
 
 from standoff.cli import main
+from sweep.conftest import JOB, SCENE
 
 PASSING = """version = 1
 title = "Tool past a box"
@@ -56,6 +57,20 @@ def standoff(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
         return Ended(code, *capsys.readouterr())
 
     return run
+
+
+def lines_of(text: str) -> dict[str, str]:
+    """What is printed, by the labels of its lines."""
+    return {line[:14].strip(): line[14:] for line in text.splitlines() if line[:14].strip()}
+
+
+@pytest.fixture
+def job(tmp_path: Path) -> Path:
+    """A sweep's job beside its scene."""
+    (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
+    file = tmp_path / "job.toml"
+    file.write_text(JOB, encoding="utf-8")
+    return file
 
 
 @pytest.fixture

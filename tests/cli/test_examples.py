@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import runpy
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +14,16 @@ import pytest
 
 from standoff.motion import read_pose_samples
 from standoff.scene import load_scene, query, record
+from standoff.sweep.proof.proof import Proof
+from standoff.sweep.reading import load_job
 
 Standoff = Callable[..., Any]
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WORLDS = ("fits", "shelves")
 FITS = "fits-allowed"
-SWEEP, WORKSPACE = "sweep", "workspace"
-JOBS = (SWEEP, WORKSPACE)
+SWEEP, WORKSPACE, TOLERANCES = "sweep", "workspace", "tolerances"
+JOBS = (SWEEP, WORKSPACE, TOLERANCES)
 SCENES = [
     file for file in sorted(EXAMPLES.glob("*.toml")) if file.stem not in (*WORLDS, FITS, *JOBS)
 ]
@@ -111,6 +114,19 @@ def test_the_sweep_finds_rows_that_are_too_near(standoff: Standoff, tmp_path: Pa
     assert ended.code == 3
     assert "100 000 of 100 000 rows, 100 %" in ended.out
     assert "100 rows are not proven to be 0.001 m apart" in ended.out
+
+
+def test_the_tolerances_are_proven(standoff: Standoff, tmp_path: Path) -> None:
+    """The least gap is that of a roller which is too large and too low, above the cam's axis."""
+    file, least = EXAMPLES / f"{TOLERANCES}.toml", 0.0002 - 0.00006 - 0.00002
+    ended = standoff("sweep", file, "--prove", "clearance=0.0001", "-o", tmp_path / "out", "--json")
+    assert ended.code == 0
+    assert 0.0001 <= json.loads(ended.out)["bound"] <= least
+    job = load_job(file)
+    few = replace(job, effort=job.effort._replace(queries=500, shards=1))
+    nearest = Proof(few, 1.1 * least).computed(0).nearest.places
+    assert least <= nearest.distance[0] <= 1.2 * least
+    assert nearest.numbers[0, 0] == 0.00006
 
 
 def test_some_of_the_workspace_is_proven(standoff: Standoff) -> None:

@@ -8,25 +8,14 @@ from typing import Any
 
 import pytest
 
-from cli.conftest import Standoff
+from cli.conftest import Standoff, lines_of
 from cli.test_hostile_names import OBEYED, hostile, obeyed, toml
 from standoff.sweep import run as runs
 from standoff.sweep.folder import locked
 from standoff.sweep.reading import load_job
 from sweep.conftest import JOB, SCENE, TOP
+from sweep.shape_jobs import SHAPE_JOB, TOOL_AND_BALL
 from sweep.test_subjects import OF_ROBOT
-
-
-@pytest.fixture
-def job(tmp_path: Path) -> Path:
-    (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
-    file = tmp_path / "job.toml"
-    file.write_text(JOB, encoding="utf-8")
-    return file
-
-
-def lines_of(text: str) -> dict[str, str]:
-    return {line[:14].strip(): line[14:] for line in text.splitlines() if line[:14].strip()}
 
 
 def test_a_sweep_and_its_report(standoff: Standoff, job: Path, tmp_path: Path) -> None:
@@ -107,6 +96,29 @@ def test_one_row(standoff: Standoff, job: Path) -> None:
     assert list(facts["parameters"].values()) == found.numbers(1234, 1235)[0].tolist()
     assert facts["poses"] == answer.as_dict()["poses"]
     assert facts["status"] == answer.status.name
+
+
+def test_shapes_that_change_are_told(standoff: Standoff, tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text(TOOL_AND_BALL, encoding="utf-8")
+    file, page, out = tmp_path / "job.toml", tmp_path / "page.html", tmp_path / "out"
+    text = SHAPE_JOB.replace("worst = 5", "worst = 1").replace("rows = 60", "rows = 12")
+    scale = '[parameters.s]\nshapes = "tool"\nwhat = "scale"\nfrom = 0.5\nto = 2.0\n[sampler]'
+    file.write_text(text.replace("[sampler]", scale), encoding="utf-8")
+    said = lines_of(standoff("sweep", file, "--row", 3).out)
+    assert said["a"].endswith(" cm, semi_axes.1 of tool")
+    assert said["s"].split()[1:] == ["scale", "of", "tool"]  # without a unit
+    ended = standoff("sweep", file, "-o", out, "--page", page)
+    assert lines_of(ended.out)["parameters"].startswith("r (radius of ball), a (semi_axes.1 of")
+    facts = json.loads((out / "report.json").read_text())
+    assert facts["parameters"]["r"]["shapes"] == "ball"
+    assert "<th" in page.read_text()
+    assert ">r (cm)<" in page.read_text()
+    assert ">s<" in page.read_text()
+    file.write_text(text, encoding="utf-8")
+    assert "shapes" not in standoff("sweep", file, "--estimate").err
+    file.write_text(text.replace("to = 4.0", "to = 4.5"), encoding="utf-8")
+    ended = standoff("sweep", file, "-o", out)
+    assert (ended.code, "parameters.a.to was 4.0 and is 4.5" in ended.err) == (2, True)
 
 
 def test_one_row_tells_joints_and_pair(standoff: Standoff, tmp_path: Path) -> None:
@@ -332,12 +344,11 @@ def test_the_page(standoff: Standoff, job: Path, tmp_path: Path) -> None:
 def test_the_page_lists_rows_that_are_not_certified(job: Path) -> None:
     from standoff.sweep.page import page_of
     from standoff.sweep.report import Report
-    from standoff.sweep.work import of_rows
 
     text = JOB.replace("rows = 3000", "rows = 40").replace("worst = 40", "worst = 1")
     job.write_text(text, encoding="utf-8")
     small = load_job(job)
-    found = of_rows(small, 0, 40)
+    found = small.kept(0, 40)
     rows = small.answers(7, 8)
     found.uncertified.add(rows._replace(status=rows.status * 0 + 3))
     told = page_of(Report(small, found))

@@ -7,21 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from cli.conftest import Standoff
-from sweep.conftest import JOB, SCENE, TOP
+from cli.conftest import Standoff, lines_of
+from sweep.conftest import JOB, TOP
 from sweep.proof.test_proofs import PROVE
 
 
 @pytest.fixture
-def job(tmp_path: Path) -> Path:
-    (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
-    file = tmp_path / "job.toml"
-    file.write_text(PROVE, encoding="utf-8")
-    return file
-
-
-def lines_of(text: str) -> dict[str, str]:
-    return {line[:14].strip(): line[14:] for line in text.splitlines() if line[:14].strip()}
+def job(job: Path) -> Path:
+    job.write_text(PROVE, encoding="utf-8")
+    return job
 
 
 def test_a_box_that_is_not_kept(standoff: Standoff, job: Path, tmp_path: Path) -> None:

@@ -54,7 +54,7 @@ def test_the_same_bytes_and_a_scheduler_that_is_lost(
 def test_a_worker_with_something_else(make: Make) -> None:
     job = make()
     code = clusters.digest_of(clusters.code_facts())
-    token = clusters.token_of(job)
+    token = job.token
     assert clusters.shard_text(token, code, 4)[0] == 4
     with pytest.raises(StandoffError, match="a worker has another library"):
         clusters.shard_text(token, "0" * 64, 4)

@@ -216,7 +216,7 @@ def test_rows_of_a_robot_are_its_clearances(tmp_path: Path) -> None:
 def test_rows_of_solids_are_their_distances(tmp_path: Path) -> None:
     job = job_of(tmp_path, OF_SOLIDS, SOLIDS)
     rows, numbers = job.answers(0, 6), job.numbers(0, 6)
-    ring, pin = job.subject.shapes  # type: ignore[attr-defined]
+    ring, pin = job.subject.bodies  # type: ignore[attr-defined]
     for k, (x, tilt) in enumerate(numbers):
         c, s = np.cos(np.radians(tilt)), np.sin(np.radians(tilt))
         pose = so.Pose([[c, 0, s], [0, 1, 0], [-s, 0, c]], [x, 0, 0])

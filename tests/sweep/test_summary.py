@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.sweep.exact_sum import exact_sum
-from standoff.sweep.job import Bins, Job, Keep
+from standoff.sweep.job import Job
+from standoff.sweep.keep import Bins, Keep
 from standoff.sweep.rows import Rows
 from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
 from standoff.sweep.summary import Summary
-from standoff.sweep.work import of_rows
 from standoff.tracking.status import BY_NUMBER, Status
 from sweep.conftest import JOB, Make
 
@@ -26,7 +26,7 @@ def whole(job: Job) -> Summary:
     """The summary of all shards, each by way of its file's text."""
     found = Summary(job.keep)
     for k in range(job.shards):
-        text = text_of_shard(job, "code", k, of_rows(job, *job.shard(k)))
+        text = text_of_shard(job, "code", k, job.computed(k))
         found.add(read_shard(job, "code", k, text.encode()))
     return found
 
@@ -139,7 +139,7 @@ def changed(text: str, key: str, value: Any) -> str:
 
 def test_a_damaged_shard_is_refused(make: Make) -> None:
     job = make(JOB.replace("rows = 3000", "rows = 1000"))
-    text = text_of_shard(job, "code", 1, of_rows(job, 700, 1000))
+    text = text_of_shard(job, "code", 1, job.kept(700, 1000))
     assert read_shard(job, "code", 1, text.encode()).rows == 300
     for broken in (text[:-30], "", "[]", "3", changed(text, "rows", 301), "\x00" * len(text)):
         with pytest.raises(NotThisShard):

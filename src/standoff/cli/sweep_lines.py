@@ -170,7 +170,7 @@ def row_lines(job: Job, row: int, found: Alone) -> list[str]:
     for p in job.parameters:
         values = " ".join(f"{x:.17g}" for x in numbers[at : at + p.width].tolist())
         at += p.width
-        own = f" {unit if not p.unit and p.width == 1 else p.unit}".rstrip()
+        own = f" {unit if p.is_length else p.unit}".rstrip()
         lines.append(line(p.name, f"{values}{own}, {p.told}"))
     for name, numbers in found.state.items():
         lines.append(line(name, " ".join(f"{x:.17g}" for x in numbers)))

@@ -175,6 +175,28 @@ SHAPES: Mapping[str, ShapeKind] = {
 }
 """Every shape that a scene may name."""
 
+NUMBERS: Mapping[str, int] = {
+    **dict.fromkeys(("radius", "length", "height", "offset", "taper", "rounding", "scale"), 1),
+    "semi_axes": 3,
+    "size": 3,
+    "exponents": 2,
+}
+"""Keys whose value is a number, or a list of so many: those that can change from row to row."""
+
+NO_LENGTHS = ("taper", "scale", "exponents")
+"""Which of them have no unit; the others are lengths."""
+
+SAME_SIZE = ("box", "rounded_polytope")
+"""Shapes that do not grow with their `rounding`."""
+
+
+def swept_keys(shape: str) -> tuple[str, ...]:
+    """Return the keys whose numbers add up to the radius of the ball that is swept over a shape's
+    core, and that change nothing else of it."""
+    if shape in SAME_SIZE:
+        return ()
+    return ("radius", "rounding") if shape in ("sphere", "capsule") else ("rounding",)
+
 
 def read_body(table: Table, beside: Sequence[str] = ()) -> Body:
     """Return the convex body that a ``[bodies.NAME]`` table describes.

@@ -7,7 +7,8 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.sweep.estimate import Estimate, estimated
     from standoff.sweep.folder import FolderError
-    from standoff.sweep.job import Bins, Job, Keep
+    from standoff.sweep.job import Job
+    from standoff.sweep.keep import Bins, Keep
     from standoff.sweep.proof.effort import Effort
     from standoff.sweep.proof.proof import Proof
     from standoff.sweep.proof.report import ProofReport
@@ -23,7 +24,8 @@ else:
         {
             "standoff.sweep.estimate": ("Estimate", "estimated"),
             "standoff.sweep.folder": ("FolderError",),
-            "standoff.sweep.job": ("Bins", "Job", "Keep"),
+            "standoff.sweep.job": ("Job",),
+            "standoff.sweep.keep": ("Bins", "Keep"),
             "standoff.sweep.proof.effort": ("Effort",),
             "standoff.sweep.proof.proof": ("Proof",),
             "standoff.sweep.proof.report": ("ProofReport",),

@@ -9,10 +9,11 @@ from typing import Any
 
 from standoff.errors import StandoffError, not_installed
 from standoff.sweep.code import code_facts
+from standoff.sweep.digests import digest_of
 from standoff.sweep.folder import put_text, shard_file
-from standoff.sweep.job import digest_of
+from standoff.sweep.known_works import work_of
 from standoff.sweep.shard import text_of_shard
-from standoff.sweep.work import Token, Work, computed, token_of, work_of
+from standoff.sweep.work import Token, Work
 
 AHEAD = 2
 """Shards per thread of the cluster that are handed out before they are asked for."""
@@ -49,7 +50,7 @@ def made_on_cluster(
         raise ModuleNotFoundError(told, name="distributed") from error
     if not missing:
         return
-    given = token_of(work), digest_of(code_facts())
+    given = work.token, digest_of(code_facts())
     for k, text in _texts(Client, address, given, missing):
         put_text(shard_file(folder, k), text)
         yield k
@@ -95,4 +96,4 @@ def shard_text(token: Token, code_digest: str, k: int) -> tuple[int, str]:
             "cluster",
         )
     work = work_of(token)
-    return k, text_of_shard(work, code_digest, k, computed(work, k))
+    return k, text_of_shard(work, code_digest, k, work.computed(k))

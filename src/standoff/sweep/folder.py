@@ -11,9 +11,9 @@ from typing import Any
 
 from standoff.errors import StandoffError
 from standoff.sweep.code import code_facts
-from standoff.sweep.job import digest_of
+from standoff.sweep.digests import digest_of
 from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
-from standoff.sweep.work import Found, Work, computed, manifest_counts
+from standoff.sweep.work import Found, Work
 from standoff.whole_files import write_whole
 from standoff.wording import printable
 
@@ -60,7 +60,7 @@ def manifest_of(work: Work) -> dict[str, Any]:
         "version": VERSION,
         "job_sha256": work.digest,
         "code_sha256": digest_of(code),
-        **manifest_counts(work),
+        **work.counts,
         "job": work.facts,
         "code": code,
     }
@@ -197,7 +197,7 @@ def make_shard(work: Work, folder: Path, k: int) -> int:
     OSError
         If it cannot be written, as on a full disk: then it is not there.
     """
-    text = text_of_shard(work, digest_of(code_facts()), k, computed(work, k))
+    text = text_of_shard(work, digest_of(code_facts()), k, work.computed(k))
     put_text(shard_file(folder, k), text)
     return k
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +16,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose
 from standoff.scene import Scene
+from standoff.sweep.keep import Keep
 from standoff.sweep.parameters import Parameter, in_ranges
 from standoff.sweep.proof.effort import Effort
 from standoff.sweep.rows import Rows
@@ -25,56 +24,19 @@ from standoff.sweep.sample_file import SampleFile
 from standoff.sweep.samplers import Sampler
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.sweep.summary import Summary
+from standoff.sweep.work import Token, Work
 from standoff.tracking.many_distances import Distances
 
 Array = NDArray[np.float64]
 
-
-class Bins(NamedTuple):
-    """A histogram of distances: equal bins, a row at the upper end not among them."""
-
-    low: float
-    high: float
-    number: int
-
-    @property
-    def edges(self) -> Array:
-        """(number + 1,) ends of the bins."""
-        return np.linspace(self.low, self.high, self.number + 1)
-
-
-class Keep(NamedTuple):
-    """What is kept of the rows.
-
-    Attributes
-    ----------
-    worst : int
-        How many rows of least distance.
-    below : float or None
-        Rows that are not proven to be so far apart are kept [length].
-    most_below : int
-        How many of them; all are counted.
-    bins : Bins or None
-    """
-
-    worst: int = 1000
-    below: float | None = None
-    most_below: int = 10_000
-    bins: Bins | None = None
-
-    def facts(self) -> dict[str, Any]:
-        """Return plain data, as a job's file has it."""
-        known: dict[str, Any] = {"worst": self.worst}
-        if self.below is not None:
-            known |= {"below": self.below, "most_below": self.most_below}
-        if self.bins is not None:
-            low, high, number = self.bins
-            known["histogram"] = {"from": low, "to": high, "bins": number}
-        return known
+BLOCK = 8192
+"""Rows computed at once: their poses and answers, some 5 MB, stay near the processor, and what a
+call costs by itself is shared by many."""
 
 
 @dataclass(frozen=True, eq=False)
-class Job:
+class Job(Work):
     """A sweep over what a job's file names: a pair of bodies, a world or a robot.
 
     `standoff.sweep.load_job` reads one from a file.
@@ -216,15 +178,33 @@ class Job:
             "shards": {"rows": self.shard_rows},
         }
 
-    @cached_property
-    def digest(self) -> str:
-        """SHA-256 of `facts`."""
-        return digest_of(self.facts)
+    @property
+    def counts(self) -> dict[str, int]:
+        return {"rows": self.rows, "shards": self.shards, "seed": self.seed}
 
+    @property
+    def token(self) -> Token:
+        return Token(str(self.file.absolute()), self.digest)
 
-def digest_of(facts: Mapping[str, Any]) -> str:
-    """Return the SHA-256 of plain data; numbers are written so that they are read as the same."""
-    return hashlib.sha256(json.dumps(facts, sort_keys=True).encode("utf-8")).hexdigest()
+    def nothing(self) -> Summary:
+        return Summary(self.keep)
+
+    def computed(self, k: int) -> Summary:
+        return self.kept(*self.shard(k))
+
+    def kept(self, first: int, end: int) -> Summary:
+        """Return what is kept of rows first .. end - 1."""
+        found = Summary(self.keep)
+        for start in range(first, end, BLOCK):
+            found.add_rows(self.answers(start, min(start + BLOCK, end)))
+        return found
+
+    def from_facts(self, facts: Mapping[str, Any]) -> Summary:
+        return Summary.from_facts(facts, self.keep)
+
+    def try_one(self, k: int) -> None:
+        first, _ = self.shard(k)
+        self.answers(first, first + 1)
 
 
 def check_job(job: Any) -> None:

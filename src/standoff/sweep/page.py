@@ -207,7 +207,7 @@ def _rows(job: Job, rows: Rows) -> str:
     numbers = numbers_of(job, first.row.tolist())
     pairs = [job.subject.pair_names(k) for k in first.pair.tolist()]
     several = any(pair is not None for pair in pairs)
-    units = [p.unit or (unit if p.width == 1 else "") for p in job.parameters for _ in p.columns]
+    units = [unit if p.is_length else p.unit for p in job.parameters for _ in p.columns]
     heads = ["row", f"distance{label}", f"lower bound{label}"]
     heads += [
         _plain(f"{name} ({own})" if own else name)

@@ -13,12 +13,10 @@ from standoff.robots.limits import check_limits
 from standoff.scene.degrees import ENDING, with_degrees
 from standoff.scene.reader import Table, unknown_name
 from standoff.sweep.parameters import ANGLE, SHIFTS, SLIDE, TURNS, UNIFORM, Parameter
+from standoff.sweep.shape_tables import shape_parameter
 from standoff.sweep.subjects.robot import ONE_NUMBER, RobotSubject
 from standoff.sweep.subjects.subject import Subject
 from standoff.sweep.subjects.world import SceneWorld
-
-LENGTHS = (*SHIFTS, SLIDE)
-"""What has no degrees."""
 
 
 def read_parameters(top: Table, subject: Subject, kind: str) -> tuple[Parameter, ...]:
@@ -45,11 +43,14 @@ def read_parameters(top: Table, subject: Subject, kind: str) -> tuple[Parameter,
         if not all(letter.isalnum() or letter in "-_" for letter in name) or not name:
             raise table.error("names columns: give a name of letters, digits, - and _")
         robot = subject if isinstance(subject, RobotSubject) else None
-        if robot is None:
+        if "shapes" in table:
+            table.expect("shapes", "what", *_range_keys(kind))
+            parameter = _ranged(table, shape_parameter(name, table, subject), kind)
+        elif robot is None:
             parameter = _of_body(name, table, subject, kind)
         else:
             parameter = _of_joint(name, table, robot, kind)
-        if subject.planar and parameter.what not in ("x", "y", "turn_z"):
+        if subject.planar and not parameter.shape and parameter.what not in ("x", "y", "turn_z"):
             key = "rotation" if parameter.what == UNIFORM else "what"
             raise table.error("a planar body has 'x', 'y' and 'turn_z' alone", key)
         _check_beside(table, parameter, found)
@@ -144,7 +145,7 @@ def _ranged(
     limits: tuple[float, float] = (-math.inf, math.inf),
 ) -> Parameter:
     """The parameter with the range that its table gives, or else the limits, rad or length."""
-    in_degrees = _in_degrees(table, parameter.what)
+    in_degrees = _in_degrees(table, parameter)
     if kind == "file":
         return replace(parameter, degrees=in_degrees)
     ending = ENDING if in_degrees else ""
@@ -167,17 +168,20 @@ def _usual(limit: float, in_degrees: bool) -> float | None:
     return math.degrees(limit) if in_degrees else limit
 
 
-def _in_degrees(table: Table, what: str) -> bool:
-    """Are its numbers degrees? Refuses degrees of lengths, and both units at once."""
+def _in_degrees(table: Table, parameter: Parameter) -> bool:
+    """Are its numbers degrees? Refuses degrees of what is no angle, and both units at once."""
+    no_angle = not parameter.unit
+    kind = "a length" if parameter.is_length else "a number without a unit"
+    told = f"'{parameter.what}' is {kind}"
     if "degrees" in table:
         given = table.true_or_false("degrees")
-        if given and what in LENGTHS:
-            raise table.error(f"'{what}' is a length; leave it out", "degrees")
+        if given and no_angle:
+            raise table.error(f"{told}; leave it out", "degrees")
         return given
     found = [key for key in with_degrees(("from", "to")) if key in table and ENDING in key]
-    if found and what in LENGTHS:
+    if found and no_angle:
         plain = found[0].removesuffix(ENDING)
-        raise table.error(f"'{what}' is a length; write '{plain}'", found[0])
+        raise table.error(f"{told}; write '{plain}'", found[0])
     for key in ("from", "to"):
         table.only_one((key, key + ENDING))
     return bool(found)

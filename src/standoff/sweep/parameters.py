@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.motion import Pose
+from standoff.scene.shapes import NO_LENGTHS
 
 Array = NDArray[np.float64]
 
@@ -36,13 +37,17 @@ class Parameter:
         The body, or the joint of a robot.
     what : str
         One of `SHIFTS`, of the body's origin along an axis of the world; one of `TURNS`, about an
-        axis of the body through its origin; `UNIFORM`; or of a joint `ANGLE` or `SLIDE`.
+        axis of the body through its origin; `UNIFORM`; or of a joint `ANGLE` or `SLIDE`. Of a
+        shape, a key of the body's table, with the number of its entry if it has several, from 1
+        on: ``"radius"``, ``"semi_axes.2"``.
     low, high : float
         Its range, in the scene's length, rad, or degrees; 0 and 1 where it has none.
     degrees : bool
         Are its numbers angles in degrees?
     steps : int
         Of a grid, the number of values; otherwise 0.
+    shape : bool
+        Does it change the body's shape, and not where it is?
     """
 
     name: str
@@ -52,6 +57,7 @@ class Parameter:
     high: float = 1.0
     degrees: bool = False
     steps: int = 0
+    shape: bool = False
 
     @property
     def width(self) -> int:
@@ -73,6 +79,12 @@ class Parameter:
         return ""
 
     @property
+    def is_length(self) -> bool:
+        """Is its number a length, in the scene's unit?"""
+        pure = self.shape and self.what.partition(".")[0] in NO_LENGTHS
+        return self.what not in (*TURNS, ANGLE, UNIFORM) and not pure
+
+    @property
     def told(self) -> str:
         """What it changes, for a reader."""
         if self.what in (ANGLE, SLIDE):
@@ -83,12 +95,19 @@ class Parameter:
     def facts(self) -> dict[str, Any]:
         """Return plain data, as a job's file has it."""
         joint = self.what in (ANGLE, SLIDE)
-        known: dict[str, Any] = {"joint" if joint else "moves": self.moves}
+        key = "joint" if joint else "shapes" if self.shape else "moves"
+        known: dict[str, Any] = {key: self.moves}
         if self.what == UNIFORM:
             return known | {"rotation": UNIFORM}
         ending = "_degrees" if self.degrees else ""
         known |= {"what": self.what, f"from{ending}": self.low, f"to{ending}": self.high}
         return known | ({"steps": self.steps} if self.steps else {})
+
+
+def columns_of(parameters: Sequence[Parameter]) -> list[tuple[int, Parameter]]:
+    """Return each parameter with the place of its first number in a row."""
+    ends = np.cumsum([0, *(p.width for p in parameters)]).tolist()
+    return list(zip(ends[:-1], parameters, strict=True))
 
 
 def in_ranges(parameters: Sequence[Parameter], points: Array) -> Array:
@@ -118,16 +137,12 @@ def moved(home: Pose, body: str, parameters: Sequence[Parameter], numbers: Array
         Of both bodies.
     numbers : (n, columns) array
     """
-    own = any(p.moves == body for p in parameters)
+    own = [(at, p) for at, p in columns_of(parameters) if p.moves == body and not p.shape]
     n = len(numbers) if own else 1
     turn = np.repeat(home.rotation[:, :, None], n, axis=2)
     shift = np.repeat(home.translation[:, None], n, axis=1)
-    at = 0
-    for p in parameters:
+    for at, p in own:
         given = np.ascontiguousarray(numbers[:, at : at + p.width].T)
-        at += p.width
-        if p.moves != body:
-            continue
         if p.what == UNIFORM:
             turn = _product(turn, _uniform(given))
         elif p.what in SHIFTS:

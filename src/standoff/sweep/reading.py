@@ -7,7 +7,8 @@ import os
 from standoff.scene import SceneError
 from standoff.scene.files import existing_file, text_of, toml_tables
 from standoff.scene.reader import Table, shown
-from standoff.sweep.job import Bins, Job, Keep
+from standoff.sweep.job import Job
+from standoff.sweep.keep import Bins, Keep
 from standoff.sweep.parameter_tables import read_parameters
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.effort import effort_of
@@ -19,6 +20,7 @@ from standoff.sweep.samplers import (
     Sampler,
     SobolSampler,
 )
+from standoff.sweep.shape_tables import with_shapes
 from standoff.sweep.subject_tables import SUBJECT_KEYS, read_subject
 from standoff.whole_files import file_name
 from standoff.wording import counted, printable
@@ -84,6 +86,7 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     subject, title = read_subject(top)
     kind, table = _sampler_table(top)
     parameters = read_parameters(top, subject, kind)
+    subject = with_shapes(top, subject, parameters, kind)
     source, rows, seed = _source(table, kind, parameters)
     return Job(
         file=path,

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.sweep.code import code_facts
-from standoff.sweep.job import Job, digest_of
+from standoff.sweep.digests import digest_of
+from standoff.sweep.job import Job
 from standoff.sweep.rows import Rows
 from standoff.sweep.summary import Listed, Summary
 

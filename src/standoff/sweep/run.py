@@ -31,11 +31,12 @@ from standoff.sweep.folder import (
     shard_file,
 )
 from standoff.sweep.job import Job, check_job
+from standoff.sweep.known_works import work_of
 from standoff.sweep.proof.proof import Proof, check_proof
 from standoff.sweep.proof.report import ProofReport, proof_facts
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.shard import NotThisShard
-from standoff.sweep.work import Token, Work, nothing, token_of, try_one, work_of
+from standoff.sweep.work import Token, Work
 from standoff.whole_files import file_name
 
 Tell = Callable[[str], None]
@@ -168,7 +169,7 @@ def merged(work: Work, folder: Path) -> Any:
     StandoffError
         If one is missing, or is not what was written.
     """
-    found = nothing(work)
+    found = work.nothing()
     for k in range(work.shards):
         try:
             part = kept_shard(work, folder, k)
@@ -194,8 +195,8 @@ def _made(work: Work, folder: Path, missing: Sequence[int], workers: int) -> Ite
             yield make_shard(work, folder, k)
         return
     # Here, so that one process compiles what is not compiled yet.
-    try_one(work, missing[0])
-    given = token_of(work), os.path.abspath(folder)
+    work.try_one(missing[0])
+    given = work.token, os.path.abspath(folder)
     with _processes(min(workers, len(missing))) as pool:
         left, running = list(reversed(missing)), set[Future[int]]()
         while left or running:

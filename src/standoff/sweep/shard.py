@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from standoff.sweep.job import digest_of
-from standoff.sweep.work import Found, Work, summary_of
+from standoff.sweep.digests import digest_of
+from standoff.sweep.work import Found, Work
 
 FORMAT, VERSION = "standoff sweep shard", 1
 
@@ -64,4 +64,4 @@ def read_shard(work: Work, code: str, k: int, text: bytes) -> Found:
     ):
         if facts.get(key) != value:
             raise NotThisShard(f"its {key} is {facts.get(key)!r}, not {value!r}")
-    return summary_of(work, facts)
+    return work.from_facts(facts)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.sweep.exact_sum import exact_sum
-from standoff.sweep.job import Keep
+from standoff.sweep.keep import Keep
 from standoff.sweep.rows import Rows
 from standoff.tracking.answers import PROVEN
 from standoff.tracking.status import BY_NUMBER, Status

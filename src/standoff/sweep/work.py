@@ -2,93 +2,93 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
 
-from standoff.sweep.job import Job
-from standoff.sweep.known_jobs import job_of
-from standoff.sweep.proof.proof import Proof
-from standoff.sweep.proof.summary import ProofSummary
-from standoff.sweep.summary import Summary
-
-Work = Job | Proof
-Found = Summary | ProofSummary
-
-BLOCK = 8192
-"""Rows computed at once: their poses and answers, some 5 MB, stay near the processor, and what a
-call costs by itself is shared by many."""
+from standoff.sweep.digests import digest_of
 
 
-def nothing(work: Work) -> Any:
-    """Return a summary of no shard."""
-    if isinstance(work, Proof):
-        return ProofSummary(work.most, len(work.job.parameters))
-    return Summary(work.keep)
+class Found(Protocol):
+    """What is kept of some shards."""
+
+    def add(self, later: Any) -> None:
+        """Add what is kept of the shards behind them."""
+
+    def facts(self) -> dict[str, Any]:
+        """Return plain data that JSON can hold."""
 
 
-def summary_of(work: Work, facts: Mapping[str, Any]) -> Found:
-    """Return the summary that a shard's file has as plain data."""
-    if isinstance(work, Proof):
-        return ProofSummary.from_facts(facts, work.most, len(work.job.parameters))
-    return Summary.from_facts(facts, work.keep)
+class Token(NamedTuple):
+    """What another process knows a work by.
 
-
-def computed(work: Work, k: int) -> Found:
-    """Return what is kept of shard k."""
-    return work.computed(k) if isinstance(work, Proof) else of_rows(work, *work.shard(k))
-
-
-def of_rows(job: Job, first: int, end: int) -> Summary:
-    """Return what is kept of rows first .. end - 1."""
-    found = Summary(job.keep)
-    for start in range(first, end, BLOCK):
-        found.add_rows(job.answers(start, min(start + BLOCK, end)))
-    return found
-
-
-def try_one(work: Work, k: int) -> None:
-    """Ask once of shard k, so that one process compiles what is not compiled yet."""
-    first, _ = work.shard(k)
-    if isinstance(work, Proof):
-        work.box.look(work.first(k))
-    else:
-        work.answers(first, first + 1)
-
-
-def manifest_counts(work: Work) -> dict[str, int]:
-    """Return what a manifest tells of it first."""
-    if isinstance(work, Proof):
-        return {"shards": work.shards}
-    return {"rows": work.rows, "shards": work.shards, "seed": work.seed}
-
-
-Token = tuple[str, str, float | None]
-
-
-def token_of(work: Work) -> Token:
-    """Return what another process knows the work by: `work_of` takes it."""
-    clearance = work.clearance if isinstance(work, Proof) else None
-    job = work.job if isinstance(work, Proof) else work
-    return str(job.file.absolute()), job.digest, clearance
-
-
-_proofs: dict[Token, Proof] = {}
-
-
-def work_of(token: Token) -> Work:
-    """Return the work of a token, its job's file read once.
-
-    Raises
-    ------
-    SceneError
-        If it cannot be read here.
-    StandoffError
-        If it is another job here.
+    Attributes
+    ----------
+    file : str
+        Of the job.
+    digest : str
+        Of the job.
+    clearance : float or None
+        Of a proof.
     """
-    file, digest, clearance = token
-    job = job_of(file, digest)
-    if clearance is None:
-        return job
-    if token not in _proofs:
-        _proofs[token] = Proof(job, clearance)
-    return _proofs[token]
+
+    file: str
+    digest: str
+    clearance: float | None = None
+
+
+class Work(ABC):
+    """What is computed shard by shard, each by itself, and merged in their order."""
+
+    file: Path
+    """The job's."""
+
+    rows: int
+    """What progress counts."""
+
+    @property
+    @abstractmethod
+    def shards(self) -> int:
+        """How many shards there are."""
+
+    @abstractmethod
+    def shard(self, k: int) -> tuple[int, int]:
+        """Return the first of what progress counts in a shard, and the first behind it."""
+
+    @property
+    @abstractmethod
+    def facts(self) -> Mapping[str, Any]:
+        """All that its results depend on, as plain data."""
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of `facts`."""
+        return digest_of(self.facts)
+
+    @property
+    @abstractmethod
+    def counts(self) -> dict[str, int]:
+        """What a manifest tells of it first."""
+
+    @property
+    @abstractmethod
+    def token(self) -> Token:
+        """What another process knows it by: `known_works.work_of` takes it."""
+
+    @abstractmethod
+    def nothing(self) -> Any:
+        """Return what is kept of no shard."""
+
+    @abstractmethod
+    def computed(self, k: int) -> Found:
+        """Return what is kept of shard k."""
+
+    @abstractmethod
+    def from_facts(self, facts: Mapping[str, Any]) -> Found:
+        """Return what a shard's file has as plain data."""
+
+    @abstractmethod
+    def try_one(self, k: int) -> None:
+        """Ask once of shard k, so that one process compiles what is not compiled yet."""

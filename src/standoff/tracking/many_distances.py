@@ -283,6 +283,23 @@ def rows_at_made_poses(a: Body, b: Body, poses: tuple[Array, Array], within: flo
     return rows
 
 
+def fit_poses(a: Body, b: Body, poses: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Poses as `distances` asks of them, for `rows_at_made_poses`: rounded rotations are repaired,
+    and invalid poses nan, of which the rows are nan as well.
+
+    Parameters
+    ----------
+    a, b : Body
+    poses : two (n, 4, 4) arrays, or (1, 4, 4)
+    """
+    planar = a.dimension == 2 or b.dimension == 2
+    of_a, of_b = (
+        _checked(read_poses(given, name), name, planar)[0]
+        for given, name in zip(poses, ("poses_a", "poses_b"), strict=True)
+    )
+    return of_a, of_b
+
+
 def _tracker(a: Body, b: Body, within: float | None) -> Tracker:
     if within is None:
         return Tracker(a, b)

@@ -13,7 +13,7 @@ from standoff.kernels.body import layout as L
 from standoff.sweep.job import Job
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.extent import farthest
-from standoff.sweep.proof.pair_box import TOGETHER
+from standoff.sweep.proof.mover import TOGETHER
 from standoff.sweep.proof.proof import Proof
 from standoff.tracking.many_distances import answered_rows
 from sweep.conftest import TOP, Make

@@ -10,7 +10,6 @@ import pytest
 from standoff.errors import StandoffError
 from standoff.scene import SceneError
 from standoff.sweep import cluster as clusters
-from standoff.sweep import work as works
 from standoff.sweep.folder import FolderError, shard_file
 from standoff.sweep.proof.estimate import estimated_proof
 from standoff.sweep.proof.proof import Proof
@@ -65,10 +64,10 @@ def test_the_same_bytes_by_two_processes_and_after_kills(make: Make, tmp_path: P
 def test_a_part_is_the_same_by_its_token(make: Make) -> None:
     """As a worker on another machine has it."""
     proof = Proof(make(PROVE), 0.3)
-    token, code = works.token_of(proof), clusters.digest_of(clusters.code_facts())
+    token, code = proof.token, clusters.digest_of(clusters.code_facts())
     k, text = clusters.shard_text(token, code, 5)
     assert k == 5
-    assert works.work_of(token).digest == proof.digest
+    assert clusters.work_of(token).digest == proof.digest
     assert text == clusters.text_of_shard(proof, code, 5, proof.computed(5))
 
 

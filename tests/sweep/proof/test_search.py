@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from standoff.sweep.job import Job
+from standoff.sweep.parameters import Parameter
+from standoff.sweep.proof import search as searches
+from standoff.sweep.proof.box import Looked, ParameterBox
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.pair_box import PairBox
 from standoff.sweep.proof.proof import Proof
@@ -124,6 +127,31 @@ def test_a_level_that_is_too_large_is_parted_with_its_queries() -> None:
     assert sum(left for _, left in parts) == 1001
     assert np.array_equal(np.concatenate([c.place for c, _ in parts[::-1]]), cells.place)
     assert max(len(c.place) for c, _ in parts) <= TOGETHER // 2 + 1
+
+
+class HalfEasy(ParameterBox):
+    """One parameter: cells of its lower half are soon proven, those of the upper one never."""
+
+    block = 16
+
+    def __init__(self) -> None:
+        super().__init__([Parameter("x", "tool", "x")], 0.0)
+
+    def moves(self, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
+        return cells.halves[:, 0], cells.halves
+
+    def look(self, cells: Cells) -> Looked:
+        n = len(cells.place)
+        easy = (cells.middles[:, 0] < 0.5) & (cells.levels >= 8)
+        kind, zero = np.where(easy, int(Kind.PROVEN), -1), np.zeros(n)
+        return Looked(kind, zero.astype(int), zero, zero, n, 0, cells.known)
+
+
+def test_what_a_group_does_not_use_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(searches, "TOGETHER", 64)
+    found = search(HalfEasy(), Cells.whole(1), 4000, 5)
+    assert found.queries == 4000
+    assert found.share(Kind.PROVEN) == Fraction(1, 2)
 
 
 def test_without_queries_all_is_open(make: Make) -> None:

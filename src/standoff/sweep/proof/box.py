@@ -29,7 +29,7 @@ class Looked(NamedTuple):
     lower : (n,) array
         Proven everywhere in the cell [length].
     distance : (n,) array
-        An upper bound in the middle; inf where it was not asked.
+        An upper bound at the parameters that were asked; inf where none were.
     queries, uncertified : int
         Distances that were asked, and how many of them are not proven.
     known : (n, pairs) array
@@ -53,9 +53,10 @@ class Told(NamedTuple):
     lower, upper : (n,) arrays
         Between which the distance is anywhere in the cell.
     distance : (n,) array
-        An upper bound in the middle.
+        An upper bound at the parameters that were asked.
     ways : (n, columns) array
-        What each parameter by itself takes from the bound in the middle.
+        What each parameter by itself takes from the bound in the middle; of a shape, about what
+        halving it gives back.
     moved : (n, columns) array
         How far each parameter by itself can move a point.
     """
@@ -87,7 +88,8 @@ class ParameterBox(ABC):
         """A cell whose points move by no more than this is not halved [length]."""
 
     def numbers(self, cells: Cells) -> Array:
-        """Return the parameters (n, columns) in the middles, as rows of the sweep have them."""
+        """Return the parameters (n, columns) that are asked in cells, as rows of the sweep have
+        them: in their middles."""
         return in_ranges(self.parameters, cells.middles)
 
     @property

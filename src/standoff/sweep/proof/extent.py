@@ -1,4 +1,5 @@
-"""How far a body's core reaches from the origin of its frame, about which sweeps turn it."""
+"""How far a body's core reaches: from the origin of its frame, about which sweeps turn it, and
+along directions."""
 
 from __future__ import annotations
 
@@ -28,18 +29,46 @@ def farthest(body: Body) -> float:
     asked is within an angle of it, along which the point is at most 1 / cosine farther than the
     core's proven support.
     """
-    box = Box(body)
-    corner = float(np.linalg.norm(np.abs(box.middle) + box.half))
-    planar = body.dimension == 2
-    directions, cosine = _round() if planar else _sphere()
-    far = 2.0 * (corner + box.radius)
+    directions, cosine = directions_for(body, SIDE)
+    corner, far = _reach(body)
     if far == 0.0:
         return 0.0
+    return min(corner, max(0.0, float(supports(body, directions).max()) / cosine))
+
+
+def directions_for(body: Body, side: int) -> tuple[Array, float]:
+    """Return unit vectors all round, and the least cosine between any direction and the nearest of
+    them.
+
+    Parameters
+    ----------
+    body : Body
+        Of a planar one they are in its plane.
+    side : int
+        Of spatial ones, how many along each side of a cube.
+    """
+    return _round() if body.dimension == 2 else _sphere(side)
+
+
+def supports(body: Body, directions: Array) -> Array:
+    """Return proven bounds on how far a bounded body's core reaches along unit vectors (n, 3)."""
+    _, far = _reach(body)
+    if far == 0.0:
+        return np.zeros(len(directions))
     # No body is wider than the segment, so that stands for its whole line.
+    planar = body.dimension == 2
     wall = shapes.segment([-far, 0, 0], [far, 0, 0]) if planar else shapes.halfspace()
     found = answered_rows(body, wall, np.eye(4), _facing(directions, far, planar))
-    supports = far - found.lower_bound - float(body.reals[L.RADIUS])
-    return min(corner, max(0.0, float(supports.max()) / cosine))
+    bounds: Array = far - found.lower_bound - float(body.reals[L.RADIUS])
+    return bounds
+
+
+def _reach(body: Body) -> tuple[float, float]:
+    """The distance of the farthest corner of a body's box from the origin, and of walls that are
+    off it; both 0 of a point there."""
+    box = Box(body)
+    corner = float(np.linalg.norm(np.abs(box.middle) + box.half))
+    return corner, 2.0 * (corner + box.radius)
 
 
 def _facing(directions: Array, far: float, planar: bool) -> Array:
@@ -58,10 +87,10 @@ def _facing(directions: Array, far: float, planar: bool) -> Array:
     return poses
 
 
-def _sphere() -> tuple[Array, float]:
+def _sphere(side: int) -> tuple[Array, float]:
     """Unit vectors through the middles of squares on a cube's faces, and the least cosine between
     any direction and the nearest of them."""
-    along = (2.0 * np.arange(SIDE) + 1.0) / SIDE - 1.0
+    along = (2.0 * np.arange(side) + 1.0) / side - 1.0
     u, v = (x.ravel() for x in np.meshgrid(along, along))
     found = np.zeros((6, len(u), 3))
     for axis in range(3):
@@ -72,7 +101,7 @@ def _sphere() -> tuple[Array, float]:
     # On the faces, at the distance 1 or more, no point of a square is farther from its middle than
     # half the diagonal h; of unit length they are not farther apart, and their product is at least
     # 1 - h^2 / 2.
-    half_diagonal = np.sqrt(2.0) / SIDE
+    half_diagonal = np.sqrt(2.0) / side
     lengths = np.linalg.norm(directions, axis=1)[:, None]
     return directions / lengths, 1.0 - 0.5 * half_diagonal**2
 

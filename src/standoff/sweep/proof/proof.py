@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from standoff.bodies.body import Body
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.sweep.job import Job, check_job, digest_of
+from standoff.sweep.job import Job, check_job
 from standoff.sweep.parameters import UNIFORM, Parameter
 from standoff.sweep.proof.box import ParameterBox
 from standoff.sweep.proof.cells import Cells
-from standoff.sweep.proof.pair_box import PairBox, PlacedBody
+from standoff.sweep.proof.mover import PlacedBody
+from standoff.sweep.proof.pair_box import PairBox
 from standoff.sweep.proof.robot_box import RobotBox
 from standoff.sweep.proof.search import search
 from standoff.sweep.proof.summary import ProofSummary
@@ -24,9 +24,10 @@ from standoff.sweep.proof.world_box import WorldBox
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.robot import RobotSubject
 from standoff.sweep.subjects.world import SceneWorld
+from standoff.sweep.work import Token, Work
 
 
-class Proof:
+class Proof(Work):
     """That the bodies of a job keep a clearance at all parameters in their ranges.
 
     Parameters
@@ -45,18 +46,13 @@ class Proof:
 
     def __init__(self, job: Job, clearance: float) -> None:
         check_job(job)
-        self.job = job
+        self.job, self.file = job, job.file
         self.clearance = not_negative(clearance, "clearance")
         self.box = _box(job, self.clearance)
-        self.effort = job.effort
+        self.effort, self.rows = job.effort, job.effort.shards
         reach = float(self.box.moves(self.box.whole)[0][0])
         given = self.effort.finest
         self.box.finest = FINEST_SHARE * reach if given is None else given
-
-    @property
-    def file(self) -> Path:
-        """The job's."""
-        return self.job.file
 
     @property
     def shards(self) -> int:
@@ -71,11 +67,6 @@ class Proof:
     def most(self) -> int:
         """Places that each list holds."""
         return self.job.keep.worst
-
-    @property
-    def rows(self) -> int:
-        """What progress counts: parts."""
-        return self.shards
 
     def computed(self, k: int) -> ProofSummary:
         """Return what is proven of part k."""
@@ -101,10 +92,22 @@ class Proof:
         own = asked | {"queries": self.effort.queries, "shards": self.shards}
         return {**facts, "prove": own | {"worst": self.most}}
 
-    @cached_property
-    def digest(self) -> str:
-        """SHA-256 of `facts`."""
-        return digest_of(self.facts)
+    @property
+    def counts(self) -> dict[str, int]:
+        return {"shards": self.shards}
+
+    @property
+    def token(self) -> Token:
+        return self.job.token._replace(clearance=self.clearance)
+
+    def nothing(self) -> ProofSummary:
+        return ProofSummary(self.most, len(self.job.parameters))
+
+    def from_facts(self, facts: Mapping[str, Any]) -> ProofSummary:
+        return ProofSummary.from_facts(facts, self.most, len(self.job.parameters))
+
+    def try_one(self, k: int) -> None:
+        self.box.look(self.first(k))
 
 
 def check_proof(proof: Any) -> None:
@@ -147,11 +150,9 @@ def _box(job: Job, clearance: float) -> ParameterBox:
         return WorldBox(job.subject, job.parameters, clearance)
     if isinstance(job.subject, ConvexPair):
         subject = job.subject
-        placed = [
-            PlacedBody(*each)
-            for each in zip(subject.scene.pair, subject.bodies, subject.homes, strict=True)
-        ]
-        _check_planes({name: body for name, body, _ in placed}, job.parameters)
+        given = (subject.scene.pair, subject.bodies, subject.homes, subject.shaped)
+        placed = [PlacedBody(*each) for each in zip(*given, strict=True)]
+        _check_planes({each.name: each.body for each in placed}, job.parameters)
         return PairBox((placed[0], placed[1]), job.parameters, clearance)
     raise StandoffError(
         f"a proof is of convex bodies or of a robot, and {job.subject.name} need not be convex",

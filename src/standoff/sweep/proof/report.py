@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from standoff.robots.proof import Verdict
 from standoff.sweep.code import code_facts
-from standoff.sweep.job import digest_of
+from standoff.sweep.digests import digest_of
 from standoff.sweep.proof.proof import Proof
 from standoff.sweep.proof.summary import Places, ProofSummary
 

@@ -110,7 +110,11 @@ class RobotBox(ParameterBox):
         # along what moves the pair most that stands in the way most
         worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
         ways[at[worst]] = self._by_column(some_of(middle, worst).reaches)
-        told = Told(lower, upper, distance, ways, ways.copy())
+        # and where the middle is too near, of the pair that is nearest there
+        steps = ways.copy()
+        nearest = np.flatnonzero(apart.upper + self.doubt == distance[at[ask]])
+        steps[at[ask[nearest]]] = self._by_column(some_of(some, nearest).reaches)
+        told = Told(lower, upper, distance, ways, steps)
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
         return self.decided(cells, moved, told, asked)._replace(known=known)

@@ -4,6 +4,10 @@ A cell is proven where a lower bound of the distance in all of it reaches the cl
 where an upper bound is below, and halved otherwise, along the parameter that stands in the way
 most. Whatever is decided of a cell depends on that cell alone, so the same cells are found however
 they are shared out.
+
+Queries that one group of cells does not use are passed on to the next within a search. Between the
+parts of a box, which are searched at the same time on any number of workers, they are not: what a
+part may take would depend on those before it, which would have to be done first.
 """
 
 from __future__ import annotations
@@ -53,18 +57,20 @@ class _Search:
         self.found = ProofSummary(most, len(box.parameters))
 
     def run(self, first: Cells, queries: int) -> ProofSummary:
-        waiting = [(first, queries)]
+        waiting, unused = [(first, queries)], 0
         while waiting:
             cells, left = waiting.pop()
+            left, unused = left + unused, 0
             while len(cells.place) and left > 0:
                 if len(cells.place) > TOGETHER:
                     waiting += _parted(cells, left)
-                    cells = cells.at(slice(0))
+                    cells, left = cells.at(slice(0)), 0
                     break
                 before = self.found.queries
                 cells = self._level(cells, left)
                 left -= self.found.queries - before
             self._leave(cells)
+            unused = left
         return self.found
 
     def _level(self, cells: Cells, queries: int) -> Cells:

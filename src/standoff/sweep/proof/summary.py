@@ -31,11 +31,11 @@ class Places(NamedTuple):
     Attributes
     ----------
     numbers : (n, columns) array
-        Parameters in their middles.
+        Parameters that were asked in them: the middles, and of shapes the largest bodies.
     half : (n, columns) array
         Half sides, in the parameters' units.
     distance : (n,) array
-        In the middle; an upper bound of it.
+        There; an upper bound of it.
     bound : (n,) array
         Proven in the whole cell.
     """

@@ -13,7 +13,8 @@ from standoff.motion import Pose
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
-from standoff.sweep.proof.pair_box import PairBox, PlacedBody
+from standoff.sweep.proof.mover import PlacedBody
+from standoff.sweep.proof.pair_box import PairBox
 from standoff.sweep.subjects.world import SceneWorld
 from standoff.world.pieces import PieceUnion
 

@@ -11,71 +11,70 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
+from standoff.errors import StandoffError
 from standoff.kernels.tolerances import FARTHEST, ROTATION
-from standoff.motion import Pose
 from standoff.motion.rotations import defect
-from standoff.scene import Scene
-from standoff.sweep.parameters import Parameter, moved
+from standoff.sweep.parameters import Parameter
 from standoff.sweep.rows import Rows
-from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.sweep.subjects.scene_pair import ScenePair
+from standoff.sweep.subjects.shaped_body import Shaped, answered_shapes, groups
+from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.tolerances import SOUND_HOME
-from standoff.tracking.many_distances import Distances, answered_rows, rows_at_made_poses
+from standoff.tracking.many_distances import Distances, answered_rows, fit_poses
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class ConvexPair(Subject):
+class ConvexPair(ScenePair):
     """The two convex bodies of a scene's pair.
 
     Attributes
     ----------
-    scene : Scene
-        Seen through the pair.
     bodies : pair of Body
-    homes : pair of Pose
-        World poses of A and B where all parameters are zero.
-    within : float or None
+        As the scene has them.
+    shaped : pair of ShapedBody or None
+        What makes the bodies of rows in their place, where parameters change their shapes.
     """
 
-    scene: Scene
     bodies: tuple[Body, Body]
-    homes: tuple[Pose, Pose]
-    within: float | None
-
-    @property
-    def length_unit(self) -> str:
-        return self.scene.length_unit
-
-    @property
-    def name(self) -> str:
-        return " and ".join(self.scene.pair)
-
-    @property
-    def movable(self) -> tuple[str, ...]:
-        return self.scene.pair
-
-    @property
-    def planar(self) -> bool:
-        return any(body.dimension == 2 for body in self.bodies)
-
-    def poses(self, parameters: Sequence[Parameter], numbers: Array) -> tuple[Array, Array]:
-        """Return the world poses of A and B, (n, 4, 4) each, or (1, 4, 4) where none moves it."""
-        a, b = (
-            moved(home, body, parameters, numbers)
-            for home, body in zip(self.homes, self.scene.pair, strict=True)
-        )
-        return a, b
+    shaped: Shaped = (None, None)
 
     def distances(self, parameters: Sequence[Parameter], numbers: Array) -> Distances:
-        """Return the distances of rows."""
-        return answered_rows(*self.bodies, *self.poses(parameters, numbers), within=self.within)
+        """Return the distances of rows of the same shapes.
+
+        Raises
+        ------
+        StandoffError
+            Rows of several shapes, which no one pair of bodies answers; numbers of no body.
+        """
+        found = list(groups(self.bodies, self.shaped, numbers))
+        if len(found) > 1:
+            raise StandoffError(
+                "These rows have bodies of several shapes, and an answer of many rows is of one "
+                "pair of bodies: ask job.answers or job.alone.",
+                "job",
+            )
+        bodies = found[0][1] if found else self.bodies
+        a, b = self.poses(parameters, numbers)
+        if len(a) == len(b) == 1:  # shapes alone change
+            a = np.repeat(a, len(numbers), axis=0)
+        return answered_rows(*bodies, a, b, within=self.within)
 
     def rows(self, parameters: Sequence[Parameter], numbers: Array, first: int) -> Rows:
         poses = self.poses(parameters, numbers)
-        if self._sound_homes and all(_near(x) for x in poses):
-            return Rows.of(first, rows_at_made_poses(*self.bodies, poses, self.within))
-        return Rows.of(first, self.distances(parameters, numbers).rows)
+        if not (self._sound_homes and all(_near(x) for x in poses)):
+            poses = fit_poses(*self.bodies, poses)
+        try:
+            answers, _ = answered_shapes(self.bodies, self.shaped, numbers, poses, self.within)
+        except StandoffError as error:
+            for k, one in enumerate(numbers):  # to tell the row
+                try:
+                    list(groups(self.bodies, self.shaped, one[None]))
+                except StandoffError as problem:
+                    raise StandoffError(f"row {first + k}: {problem}", "job") from error
+            raise
+        return Rows.of(first, answers)
 
     @cached_property
     def _sound_homes(self) -> bool:
@@ -90,17 +89,11 @@ class ConvexPair(Subject):
         found = self.distances(parameters, numbers)
         poses = tuple(zip(self.scene.pair, (x[0] for x in found.poses), strict=True))
         rows = Rows.of(row, found.rows)
-        return Alone(rows, found[0], self.scene.pair, self.bodies, poses, {})
+        return Alone(rows, found[0], self.scene.pair, found.bodies, poses, {})
 
     def facts(self) -> dict[str, Any]:
-        return {
-            "pair": self.reported(),
-            "bodies": {"a_sha256": self.bodies[0].digest, "b_sha256": self.bodies[1].digest},
-            "poses": dict(zip("ab", (p.matrix.tolist() for p in self.homes), strict=True)),
-        }
-
-    def reported(self) -> dict[str, Any]:
-        return dict(zip("ab", self.scene.pair, strict=True))
+        shaped = {one.name: one.facts() for one in self.shaped if one is not None}
+        return {**super().facts(), **({"shapes": shaped} if shaped else {})}
 
 
 def _near(poses: Array) -> bool:

@@ -9,54 +9,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.motion import Pose
-from standoff.scene import Scene
 from standoff.solids.answer import SolidProximity
-from standoff.sweep.parameters import Parameter, moved
+from standoff.sweep.parameters import Parameter
 from standoff.sweep.rows import NO_PAIR, Rows
-from standoff.sweep.subjects.shapes import digest_of_shape
-from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.sweep.subjects.scene_pair import ScenePair
+from standoff.sweep.subjects.subject import Alone
 from standoff.tracking import distance
 from standoff.tracking.status import Status
-from standoff.world.shapes import Shape
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class SolidPair(Subject):
-    """The two bodies of a scene's pair, one of them a solid.
-
-    Attributes
-    ----------
-    scene : Scene
-        Seen through the pair.
-    shapes : pair of Body or Solid
-    homes : pair of Pose
-        World poses of A and B where all parameters are zero.
-    within : float or None
-    """
-
-    scene: Scene
-    shapes: tuple[Shape, Shape]
-    homes: tuple[Pose, Pose]
-    within: float | None
-
-    @property
-    def length_unit(self) -> str:
-        return self.scene.length_unit
-
-    @property
-    def name(self) -> str:
-        return " and ".join(self.scene.pair)
-
-    @property
-    def movable(self) -> tuple[str, ...]:
-        return self.scene.pair
-
-    @property
-    def planar(self) -> bool:
-        return any(shape.dimension == 2 for shape in self.shapes)
+class SolidPair(ScenePair):
+    """The two bodies of a scene's pair, one of them a solid."""
 
     def check(self) -> None:
         """Refuse a pair that cannot be asked.
@@ -65,18 +31,18 @@ class SolidPair(Subject):
         ------
         StandoffError
         """
-        distance(*self.shapes, *self.homes, within=self.within)
+        distance(*self.bodies, *self.homes, within=self.within)
 
     def _answers(
         self, parameters: Sequence[Parameter], numbers: Array
     ) -> list[tuple[Any, Array, Array]]:
         """Of each row the answer and the two poses (4, 4)."""
         a, b = (
-            np.broadcast_to(moved(home, name, parameters, numbers), (len(numbers), 4, 4))
-            for home, name in zip(self.homes, self.scene.pair, strict=True)
+            np.broadcast_to(poses, (len(numbers), 4, 4))
+            for poses in self.poses(parameters, numbers)
         )
         return [
-            (distance(*self.shapes, one, other, within=self.within), one, other)
+            (distance(*self.bodies, one, other, within=self.within), one, other)
             for one, other in zip(a, b, strict=True)
         ]
 
@@ -88,18 +54,7 @@ class SolidPair(Subject):
         named = tuple(zip(self.scene.pair, poses, strict=True))
         rows = _rows([found], row)
         nearest = None if found.status is Status.FAR else found
-        return Alone(rows, nearest, self.scene.pair, self.shapes, named, {})
-
-    def facts(self) -> dict[str, Any]:
-        a, b = map(digest_of_shape, self.shapes)
-        return {
-            "pair": self.reported(),
-            "bodies": {"a_sha256": a, "b_sha256": b},
-            "poses": dict(zip("ab", (p.matrix.tolist() for p in self.homes), strict=True)),
-        }
-
-    def reported(self) -> dict[str, Any]:
-        return dict(zip("ab", self.scene.pair, strict=True))
+        return Alone(rows, nearest, self.scene.pair, self.bodies, named, {})
 
 
 def _rows(answers: Sequence[SolidProximity], first: int) -> Rows:

@@ -126,10 +126,10 @@ def judged(
     """Rows first .. end - 1 against what is told of their cells."""
     assert not isinstance(job.source, SampleFile)  # which a proof refuses
     kinds = tree.kinds_at(job.source.points(first, end))
-    rows = job.distances(first, end)
-    wrong = (kinds == Kind.PROVEN) & (rows.upper_bound < proof.clearance)
+    rows = job.answers(first, end)
+    wrong = (kinds == Kind.PROVEN) & (rows.distance < proof.clearance)
     wrong |= (kinds == Kind.VIOLATED) & (rows.lower_bound >= proof.clearance)
-    wrong |= ~(rows.upper_bound >= found.bound) | (kinds < 0)
+    wrong |= ~(rows.distance >= found.bound) | (kinds < 0)
     return Verdict(np.bincount(kinds, minlength=len(Kind)), int(np.count_nonzero(wrong)))
 
 

@@ -1,4 +1,4 @@
-"""Jobs that a worker has read: of a process, or of the threads of one on a cluster."""
+"""Jobs and proofs that a worker has read: of a process, or of the threads of one on a cluster."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ import threading
 
 from standoff.errors import StandoffError
 from standoff.sweep.job import Job
+from standoff.sweep.proof.proof import Proof
 from standoff.sweep.reading import load_job
+from standoff.sweep.work import Token, Work
 
 _jobs: dict[tuple[str, str], Job] = {}
+_proofs: dict[Token, Proof] = {}
 _reading = threading.Lock()
 """Threads share what one of them has read."""
 
@@ -41,3 +44,20 @@ def job_of(file: str, digest: str) -> Job:
                 )
             _jobs[file, digest] = job
     return job
+
+
+def work_of(token: Token) -> Work:
+    """Return the work of a token, its job's file read once.
+
+    Raises
+    ------
+    SceneError, StandoffError
+        As of `job_of`.
+    """
+    file, digest, clearance = token  # a cluster may send it as a plain tuple
+    job = job_of(file, digest)
+    if clearance is None:
+        return job
+    if token not in _proofs:
+        _proofs[token] = Proof(job, clearance)
+    return _proofs[token]
