@@ -317,9 +317,10 @@ def test_what_is_not_proven_is_left_to_the_general_frame(rng):
     """A tolerance that no bound meets: there is nothing that lanes may say."""
     n, law = ROWS + 3, so.PredictorCorrector(tolerance=1e-18)
     tracker = so.Tracker(PART, TOOL, law=law)
+    proven = so.Tracker(PART, TOOL)  # states that are
     gaps = rng.uniform(0.2, 1.0, size=n) + rng.uniform(-2e-3, 2e-3, size=(2, n))
     first, second = approached(np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2]), gaps, rng)
-    states = tracker.start_many(*first)
+    states = proven.start_many(*first)
     _, answers = tracker.step_many(states, *second)
     assert (answers.rows[:, OUT_COUNTS + GENERAL_FRAMES] == 1.0).all()
     for k in range(n):
