@@ -55,7 +55,19 @@ def _for_a_device(part: Any) -> Any:
 
 _FOR_A_DEVICE: dict[Any, Any] = {}
 
+
+def _each_once(library: Any) -> list[str]:
+    """The modules that a kernel is linked of. numba-cuda names one again for every way on which a
+    call leads to it, some ten times, and all of them would be read and thrown away."""
+    if library._llvm_strs is None:
+        library._llvm_strs = [str(module) for module in dict.fromkeys(library.modules)]
+    found: list[str] = library._llvm_strs
+    return found
+
+
 if not SIMULATED:
+    codegen: Any = import_module("numba.cuda.codegen")
+    codegen.CUDACodeLibrary.llvm_strs = property(_each_once)
     # where numba-cuda itself would keep what it makes of another compiler's function
     modules.Part._CUDATypingContext__dispatcher = property(_for_a_device)  # type: ignore[attr-defined]
 

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 from numba import types
 
 from standoff.gpu.compiler import SIMULATED, cuda, launched
-from standoff.kernels.compiler.decorators import ahead, pointer
+from standoff.kernels.compiler.decorators import ahead, pointer, small
 from standoff.kernels.entries import smooth
-from standoff.kernels.entries.batch import Table, start_ellipsoid
+from standoff.kernels.entries.batch import Table, start_ellipsoid, start_smooth
 from standoff.kernels.state.arrays import BLOCK_MOTION, BLOCK_POLYTOPE, N_BLOCK
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Pair
@@ -27,6 +27,27 @@ PER_BLOCK = 128
 """Threads a block: with 255 registers each, two blocks fill a multiprocessor."""
 
 
+@small
+def bodies_of(pair):  # type: ignore[no-untyped-def]
+    """What the kernels read from two bodies, from their arrays on the GPU."""
+    return Pair(pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0))
+
+
+@small
+def table_of(pair, options, poses_a, poses_b, outs):  # type: ignore[no-untyped-def]
+    """What all rows have in common."""
+    return Table(
+        bodies_of(pair),
+        read_options(pointer(options, 0)),
+        pointer(poses_a, 0),
+        pointer(poses_b, 0),
+        0 if len(poses_a) == 1 else 16,
+        0 if len(poses_b) == 1 else 16,
+        pointer(outs, 0),
+        0,  # `done` is the thread's to write
+    )
+
+
 def cold_ellipsoids(
     pair: Any, options: Any, poses_a: Any, poses_b: Any, outs: Any, done: Any
 ) -> None:
@@ -34,35 +55,30 @@ def cold_ellipsoids(
     prove it. poses (n, 4, 4), or (1, 4, 4) for all rows; outs (n, N_OUT)."""
     k = cuda.grid(1)
     if k < len(outs):
-        bodies = Pair(
-            pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0)
-        )
-        table = Table(
-            bodies,
-            read_options(pointer(options, 0)),
-            pointer(poses_a, 0),
-            pointer(poses_b, 0),
-            0 if len(poses_a) == 1 else 16,
-            0 if len(poses_b) == 1 else 16,
-            pointer(outs, 0),
-            0,  # `done` is this function's to write
-        )
+        table = table_of(pair, options, poses_a, poses_b, outs)
         done[k] = 1 if start_ellipsoid(table, k) else 0
+
+
+def _cold(look: Any) -> Callable[..., None]:
+    def cold(pair: Any, options: Any, poses_a: Any, poses_b: Any, outs: Any, done: Any) -> None:
+        k = cuda.grid(1)
+        if k < len(outs):
+            table = table_of(pair, options, poses_a, poses_b, outs)
+            done[k] = 1 if start_smooth(look, look, table, k) else 0
+
+    return cold
 
 
 def _frames(look: Any) -> Callable[..., None]:
     def frames(pair: Any, options: Any, given: Any, blocks: Any, done: Any) -> None:
         k = cuda.grid(1)
         if k < len(blocks):
-            bodies = Pair(
-                pointer(pair[0], 0), pointer(pair[1], 0), pointer(pair[2], 0), pointer(pair[3], 0)
-            )
             block, new = pointer(blocks, N_BLOCK * k), pointer(given, N_GIVEN * k)
             motion = ahead(block, BLOCK_MOTION)
             for i in range(N_GIVEN):
                 motion[i] = new[i]
             done[k] = smooth.smooth_in_block(
-                look, look, bodies, read_options(pointer(options, 0)), block
+                look, look, bodies_of(pair), read_options(pointer(options, 0)), block
             )
 
     return frames
@@ -75,15 +91,22 @@ class Kernel(NamedTuple):
     signature: tuple[Any, ...]
 
 
-COLD = "cold_ellipsoids"
+LOOKS = {
+    "sphere": smooth.on_sphere,
+    "nurbs_2": smooth.on_nurbs_2,
+    "nurbs_3": smooth.on_nurbs_3,
+    "nurbs_4": smooth.on_nurbs_4,
+    "nurbs_5": smooth.on_nurbs_5,
+}
+"""What sees a chart, by the kind of both bodies' faces (``gpu.kinds``)."""
+
+ELLIPSOIDS = "cold_ellipsoids"
+COLD = (PAIR, REALS, POSES, POSES, ROWS, INTS)
 FRAMES = (PAIR, REALS, ROWS, ROWS, INTS)
 KERNELS = {
-    COLD: Kernel(cold_ellipsoids, (PAIR, REALS, POSES, POSES, ROWS, INTS)),
-    "frames_sphere": Kernel(_frames(smooth.on_sphere), FRAMES),
-    "frames_nurbs_2": Kernel(_frames(smooth.on_nurbs_2), FRAMES),
-    "frames_nurbs_3": Kernel(_frames(smooth.on_nurbs_3), FRAMES),
-    "frames_nurbs_4": Kernel(_frames(smooth.on_nurbs_4), FRAMES),
-    "frames_nurbs_5": Kernel(_frames(smooth.on_nurbs_5), FRAMES),
+    ELLIPSOIDS: Kernel(cold_ellipsoids, COLD),
+    **{f"cold_{kind}": Kernel(_cold(look), COLD) for kind, look in LOOKS.items()},
+    **{f"frames_{kind}": Kernel(_frames(look), FRAMES) for kind, look in LOOKS.items()},
 }
 """All that is compiled for a GPU, by name."""
 

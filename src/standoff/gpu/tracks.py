@@ -12,25 +12,18 @@ from standoff.checks.numbers import positive
 from standoff.errors import StandoffError
 from standoff.gpu.compiler import check_there
 from standoff.gpu.device_arrays import empty, pair_and_options, sent
+from standoff.gpu.kinds import THERE_ARE, kind_of
 from standoff.gpu.threads import N_GIVEN, start_threads
-from standoff.kernels.body import layout as L
 from standoff.kernels.entries import tracker as entries
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
-from standoff.tracking.specialised import SPHERE, Kind, main_kind
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
 from standoff.wording import counted
 
 Array = NDArray[np.float64]
-
-KERNEL_OF: dict[Kind | None, str] = {
-    SPHERE: "frames_sphere",
-    **{(L.NURBS, degree): f"frames_nurbs_{degree}" for degree in (2, 3, 4, 5)},
-}
-"""By the kind of both bodies' faces."""
 
 
 class Tracks:
@@ -197,15 +190,15 @@ def kernel_of(tracker: Tracker) -> str:
             "law",
             law,
         )
-    kinds = main_kind(tracker.a), main_kind(tracker.b)
-    if kinds[0] != kinds[1] or kinds[0] not in KERNEL_OF:
+    kind = kind_of(tracker.a, tracker.b)
+    if kind is None:
         raise StandoffError(
-            "tracker: on a GPU there are frames of two bodies of patches of spheres, or of NURBS "
-            "of one degree from 2 to 5; step such bodies with so.Tracker.",
+            f"tracker: on a GPU there are frames of two bodies of {THERE_ARE}; step such bodies "
+            "with so.Tracker.",
             "tracker",
             tracker,
         )
-    return KERNEL_OF[kinds[0]]
+    return f"frames_{kind}"
 
 
 def _sound_poses(poses: PosesLike, name: str, n: int) -> Array:

@@ -100,6 +100,9 @@ INNER_HALVINGS = 20
 # Corrections (steps) that the smooth frame makes before it leaves a frame to the general one: the
 # first ends a frame that was predicted by twists, the second most others.
 SMOOTH_CORRECTIONS = 3
+# Evaluations of both surfaces that a smooth cold query makes before it leaves a row to the general
+# one. Most take five; those that go on in other charts, or halve a step, take more.
+SMOOTH_LOOKS = 16
 
 # Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
 TOUCHING = 1e-13

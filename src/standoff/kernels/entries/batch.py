@@ -23,6 +23,7 @@ from standoff.kernels.entries.blocks import N_TABLE, copy_pose, tabled_options, 
 from standoff.kernels.entries.frames import clear_counts, start_frame
 from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.frame.restart import anywhere
+from standoff.kernels.frame.smooth_start import smooth_start
 from standoff.kernels.lanes.ellipsoids import N_ANSWER, query_block
 from standoff.kernels.lanes.layout import N_POSE, lane, put_pose
 from standoff.kernels.lanes.layout import ROWS as LANE_ROWS
@@ -179,6 +180,22 @@ def start_ellipsoid(table, k):
     good = query_row(table.pair, goal, pose, pose_a, out)
     complete_row(out[TRIED], out)
     return good
+
+
+@kernel
+def start_smooth(look_a, look_b, table, k):
+    """Answer a row of two bodies whose faces are of known kinds by itself; True, or False with
+    nothing written where a smooth start does not prove it.
+
+    What a thread of a GPU does (`standoff.gpu`).
+    """
+    motion = reals_on_stack(N_MOTION)
+    square = copy_poses(table, k, motion)
+    if not (square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))):
+        return False
+    goal = min(table.options.tolerance, START_GAP)
+    out = ahead(table.outs, N_OUT * k)
+    return smooth_start(look_a, look_b, table.pair, inputs_at(motion, False), goal, out)
 
 
 @entry(INT, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")

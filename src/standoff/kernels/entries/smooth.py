@@ -18,6 +18,7 @@ from standoff.kernels.frame.smooth import (
     FACES,
     seen_as,
     seen_as_nurbs,
+    seen_as_sphere,
     seen_on_line,
     smooth_frame,
 )
@@ -40,7 +41,7 @@ def on_plane(ints, reals, chart, u, v):
 
 @small
 def on_sphere(ints, reals, chart, u, v):
-    return seen_as(L.SPHERE, ints, reals, chart, u, v)
+    return seen_as_sphere(ints, reals, chart, u, v)
 
 
 @small

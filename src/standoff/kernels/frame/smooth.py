@@ -6,6 +6,7 @@ no boundary, no other chart, no switch, no flat direction, no contact. It calls 
 in the same order, with fewer cases. It is tried first and writes nothing unless it answers.
 """
 
+from math import inf
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.vectors import dot, norm, rotate_back, scale, sub, unit
@@ -21,7 +22,7 @@ from standoff.kernels.body.features import (
     pair_span,
     plane_conormal,
 )
-from standoff.kernels.body.jets import curve_jet, mapped_jet, surface_jet
+from standoff.kernels.body.jets import curve_jet, mapped_jet, sphere_jet, surface_jet
 from standoff.kernels.body.nurbs import net_at, net_jet_of, unrolled_basis
 from standoff.kernels.body.trimming import well_inside
 from standoff.kernels.compiler.decorators import small
@@ -103,6 +104,16 @@ def seen_as(kind, ints, reals, chart, u, v):
     if ints[c + L.CHART_KIND] != kind:
         return NOT_SEEN
     return seen_by(kind, reals, o, surface_jet(reals, kind, o, u, v))
+
+
+@small
+def seen_as_sphere(ints, reals, chart, u, v):
+    """`seen_as` of patches of ellipsoids, without the jets of all the other kinds."""
+    c = chart_record(ints, chart)
+    o = ints[c + L.CHART_REALS]
+    if ints[c + L.CHART_KIND] != L.SPHERE:
+        return NOT_SEEN
+    return seen_by(L.SPHERE, reals, o, mapped_jet(reals, o, sphere_jet(u, v)))
 
 
 @small
@@ -220,37 +231,89 @@ def both_held(dims, pose, looked, d, span, slope):
     return held(looked.ways[1], scale(-1.0, rotate_back(pose.R, n)), least)
 
 
+class Slope(NamedTuple):
+    """How E = |dR|²/2 changes at a place."""
+
+    distance: float  # |dR|
+    span: float  # what its roundoff is measured by
+    g: Any  # gradient
+    metrics: Any
+    slope: float  # |g| in the bodies' metric
+
+
+class Fall(NamedTuple):
+    """A step of the four parameters, and what Armijo's rule asks of it."""
+
+    step: Any
+    energy: float  # E before it, with its roundoff; inf: nothing is asked
+    descent: float  # g.step
+
+
+class Newton(NamedTuple):
+    """Newton's step at a place."""
+
+    safe: bool  # is E plainly convex there, and not yet at rest nor in contact?
+    factors: Any  # of the Hessian
+    fall: Fall
+
+
+NO_FALL = Fall(NO_RATES, inf, 0.0)
+
+
+@small
+def slope_at(pair, pose, looked):
+    """What is known of E from the jets of a place."""
+    jet_a, jet_b = looked.jets
+    d = norm(looked.cones.gap)
+    g = gradient(projection_errors(jet_a, jet_b))
+    metrics = pair_metric(jet_a, jet_b)
+    return Slope(d, pair_span(pair, pose.p, d), g, metrics, metric_norm(metrics, g))
+
+
+@small
+def newton_at(looked, at):
+    """Newton's step, of any use only if it is safe."""
+    H = hessian(looked.jets[0], looked.jets[1])
+    factors = ldl(H)
+    safe, _ = plainly_definite(at.metrics, H, factors[0])
+    safe = at.distance > TOUCHING * at.span and at.slope > 0.0 and safe
+    g, step, d = at.g, negate(ldl_solve(factors, at.g)), at.distance
+    descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
+    before = 0.5 * d * d + ENERGY_NOISE * EPS * at.span * d
+    return Newton(safe, factors, Fall(step, before, descent))
+
+
+@small
+def is_enough(fall, s, looked):
+    """Is E as low as Armijo's rule asks after a part s of a step?"""
+    return energy(looked.jets[0], looked.jets[1]) <= fall.energy + ARMIJO * s * fall.descent
+
+
 @small
 def descended(look_a, look_b, dims, pair, motion, place, tolerance, most):
     """(done, corrections, place, looked, rates): `settle` of a pair that no boundary concerns."""
     pose, corrections, rates = motion.pose, 0, NO_RATES
-    looked = look(look_a, look_b, pair, pose, place)
-    done = looked.fits
-    while done:
-        jet_a, jet_b = looked.jets
-        d = norm(looked.cones.gap)
-        span = pair_span(pair, pose.p, d)
-        g = gradient(projection_errors(jet_a, jet_b))
-        metrics = pair_metric(jet_a, jet_b)
-        slope = metric_norm(metrics, g)
-        if corrections > 0 and slope <= max(AT_REST * EPS * span, tolerance * d):
-            done = both_held(dims, pose, looked, d, span, slope)
-            break
-        H = hessian(jet_a, jet_b)
-        factors = ldl(H)
-        safe, _ = plainly_definite(metrics, H, factors[0])
-        done = d > TOUCHING * span and slope > 0.0 and safe and corrections < most
+    fall = NO_FALL
+    while True:
+        # looked at in one place, which is half the code
+        place = moved(place, 1.0, fall.step)
+        looked = look(look_a, look_b, pair, pose, place)
+        done = looked.fits and inside_features(dims, pair, place)
+        done = done and is_enough(fall, 1.0, looked)
         if not done:
             break
-        b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
-        step, rates = negate(ldl_solve(factors, g)), negate(ldl_solve(factors, gradient(b)))
-        descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-        enough = 0.5 * d * d + ARMIJO * descent + ENERGY_NOISE * EPS * span * d
-        place = moved(place, 1.0, step)
-        looked = look(look_a, look_b, pair, pose, place)
+        at = slope_at(pair, pose, looked)
+        if corrections > 0 and at.slope <= max(AT_REST * EPS * at.span, tolerance * at.distance):
+            done = both_held(dims, pose, looked, at.distance, at.span, at.slope)
+            break
+        newton = newton_at(looked, at)
+        done = newton.safe and corrections < most
+        if not done:
+            break
+        b = feedforward(looked.jets[0], looked.jets[1], STILL, of_origin(motion))
+        rates = negate(ldl_solve(newton.factors, gradient(b)))
+        fall = newton.fall
         corrections += 1
-        done = looked.fits and inside_features(dims, pair, place)
-        done = done and energy(looked.jets[0], looked.jets[1]) <= enough
     return done, corrections, place, looked, rates
 
 
@@ -264,8 +327,30 @@ def known(dimension, cone):
 @small
 def known_cones(dims, cones):
     """`known` of both. A compiler that must find the kinds out itself may not, and then keeps the
-    certificate's cases for vertices: for a GPU that is 200,000 lines in place of 3,000."""
+    certificate's cases for edges at faces too."""
     return Cones(known(dims[0], cones.a), known(dims[1], cones.b), cones.x_a, cones.y_b, cones.gap)
+
+
+@small
+def proven(dims, pair, pose, place, looked, tolerance):
+    """(good, found, status): what the certificate proves of witness points at rest; good where it
+    proves them apart, and not so near contact that they need the form that is regular there."""
+    cones = known_cones(dims, looked.cones)
+    d, lower, normal, blur = certify_cones(pair, pose, place, cones, ORIGIN)
+    outcome = outcome_of(pair, pose, d, lower, blur, tolerance)
+    good = outcome == CERTIFIED and d > POLISHED * contact_scale(pair)
+    found = Found(outcome, place, d, lower, d, normal)
+    return good, found, judge(pair, pose.p, found, False, tolerance, False)
+
+
+@small
+def write_counts(corrections, out):
+    """Write how many corrections an answer took, each with an evaluation, and that it took no more
+    than that."""
+    for k in range(N_COUNTS):
+        out[OUT_COUNTS + k] = 0.0
+    out[OUT_COUNTS + EVALUATIONS] = corrections
+    out[OUT_COUNTS + CORRECTIONS] = corrections
 
 
 @small
@@ -290,20 +375,13 @@ def smooth_frame(look_a, look_b, dims, call, h):
     )
     if not done:
         return 0
-    cones = known_cones(dims, looked.cones)
-    d, lower, normal, blur = certify_cones(pair, pose, place, cones, ORIGIN)
-    outcome = outcome_of(pair, pose, d, lower, blur, options.tolerance)
-    if outcome != CERTIFIED or d <= POLISHED * contact_scale(pair):
+    good, found, status = proven(dims, pair, pose, place, looked, options.tolerance)
+    if not good:
         return 0
-    found = Found(outcome, place, d, lower, d, normal)
-    status = judge(pair, pose.p, found, False, options.tolerance, False)
     known = Tracked(Shown(found, looked.jets, False, True, rates), before.integrated)
     write_answer(pair, inputs, motion, known.shown, ORIGIN, status, out)
     feed = feeds(options.predictor, inputs.has_twist)
     carried = True, before.place, before.rates
     write_state(kept_state(carried, before, motion, h, known, feed, status), state)
-    for k in range(N_COUNTS):
-        out[OUT_COUNTS + k] = 0.0
-    out[OUT_COUNTS + EVALUATIONS] = corrections
-    out[OUT_COUNTS + CORRECTIONS] = corrections
+    write_counts(corrections, out)
     return 1

@@ -144,16 +144,22 @@ def nearest_on_arc(cone, n):
 
 
 @small
+def nearest_known(ints, reals, feature, cone, n):
+    """`nearest_normal` of a face, or of an edge with faces."""
+    if cone.kind == SINGLE:
+        return cone.first, cone.noise
+    return nearest_on_arc(cone, n)
+
+
+@small
 def nearest_normal(ints, reals, feature, cone, n):
     """(vector of a normal cone as near to the unit vector n as found, bound on its roundoff).
 
     Any member of the cone gives a valid bound, whatever its length; the nearest the tightest. It is
     a unit vector where n is near the cone. Roundings of eps are in `lowered`.
     """
-    if cone.kind == SINGLE:
-        return cone.first, cone.noise
-    if cone.kind == ARC:
-        return nearest_on_arc(cone, n)
+    if cone.kind == SINGLE or cone.kind == ARC:
+        return nearest_known(ints, reals, feature, cone, n)
     if cone.kind == CIRCLE:
         return square_to(n, cone.tangent), 0.0
     return vertex_cone(ints, reals, feature, n), 0.0
@@ -268,18 +274,6 @@ def cones_at(pair, pose, place, jets):
 
 
 @small
-def nearest_of_a(pair, place, cones, n):
-    """`nearest_normal` of A."""
-    return nearest_normal(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
-
-
-@small
-def nearest_of_b(pair, place, cones, m):
-    """`nearest_normal` of B, in B's frame."""
-    return nearest_normal(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
-
-
-@small
 def over_a(pair, cones, e, noise):
     """`overhang` of A from its witness point."""
     return overhang(pair.ints_a, pair.reals_a, cones.x_a, e, noise)
@@ -292,17 +286,17 @@ def over_b(pair, cones, e, noise):
 
 
 @small
-def hangs_over_a(pair, place, cones, n):
+def hangs_over_a(nearest, pair, place, cones, n):
     """(what hangs over A's side of the plane square to n, what roundoff may add)."""
-    cone, miss = nearest_of_a(pair, place, cones, n)
+    cone, miss = nearest(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
     return over_a(pair, cones, sub(n, cone), miss), over_a(pair, cones, ZERO, miss)
 
 
 @small
-def hangs_over_b(pair, pose, place, cones, n):
+def hangs_over_b(nearest, pair, pose, place, cones, n):
     """`hangs_over_a` of B."""
     m = into_b(pose.R, n)
-    cone, miss = nearest_of_b(pair, place, cones, m)
+    cone, miss = nearest(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
     return over_b(pair, cones, sub(m, cone), miss), over_b(pair, cones, ZERO, miss)
 
 
@@ -335,11 +329,11 @@ def certify_along(pair, pose, place, jets, n):
     cones = cones_at(pair, pose, place, jets)
     bound, blur = dot(n, cones.gap), 0.0
     if not pair.ints_a[L.UNBOUNDED]:
-        hangs, miss = hangs_over_a(pair, place, cones, n)
+        hangs, miss = hangs_over_a(nearest_normal, pair, place, cones, n)
         bound -= hangs
         blur += miss
     if not pair.ints_b[L.UNBOUNDED]:
-        hangs, miss = hangs_over_b(pair, pose, place, cones, n)
+        hangs, miss = hangs_over_b(nearest_normal, pair, pose, place, cones, n)
         bound -= hangs
         blur += miss
     return lowered(pair, pose, cones, bound), blur
@@ -355,37 +349,47 @@ def certify(pair, pose, place, jets, hint):
     -n_B, the direction of x_b - x_a and the unit vector `hint` (zero: none) that gives the greatest
     bound: near contact the direction loses its digits.
     """
-    return certify_cones(pair, pose, place, cones_at(pair, pose, place, jets), hint)
+    cones = cones_at(pair, pose, place, jets)
+    return certify_by(nearest_normal, pair, pose, place, cones, hint)
 
 
 @small
 def certify_cones(pair, pose, place, cones, hint):
-    """`certify`, by the normal cones at the witness points."""
+    """`certify`, by the normal cones at witness points on faces, or on edges with faces.
+
+    A compiler is not given the other cones: one for a GPU works on all before it leaves them out.
+    """
+    return certify_by(nearest_known, pair, pose, place, cones, hint)
+
+
+@small
+def certify_by(nearest, pair, pose, place, cones, hint):
+    """`certify`, by the normal cones and a function that finds their vectors."""
     gap = cones.gap
     d = norm(gap)
     # bodies that may overlap are bounded by unit vectors only: by any, where points coincide
     direction = scale(1.0 / d, gap) if d > COINCIDENT else ANY_DIRECTION
     m_b = into_b(pose.R, direction)
-    n_a, noise_a = nearest_of_a(pair, place, cones, direction)
-    n_b, noise_b = nearest_of_b(pair, place, cones, m_b)
+    n_a, noise_a = nearest(pair.ints_a, pair.reals_a, place.feature_a, cones.a, direction)
+    n_b, noise_b = nearest(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m_b)
     hangs_a = over_a(pair, cones, sub(direction, n_a), noise_a)
     hangs_b = over_b(pair, cones, sub(m_b, n_b), noise_b)
     blur_a, blur_b = over_a(pair, cones, ZERO, noise_a), over_b(pair, cones, ZERO, noise_b)
     along = d if d > COINCIDENT else dot(direction, gap)
     best, normal = along - hangs_a - hangs_b, direction
     if dot(hint, hint) > 0.5:
-        bound = dot(hint, gap) - hangs_over_a(pair, place, cones, hint)[0]
-        bound -= hangs_over_b(pair, pose, place, cones, hint)[0]
+        bound = dot(hint, gap) - hangs_over_a(nearest, pair, place, cones, hint)[0]
+        bound -= hangs_over_b(nearest, pair, pose, place, cones, hint)[0]
         if bound > best:
             best, normal = bound, hint
     # A's own normal: nothing hangs over at A. A zero normal (collapsed chart) bounds nothing.
     if dot(n_a, n_a) > 0.5:
-        bound = dot(n_a, gap) - hangs_over_b(pair, pose, place, cones, n_a)[0] - blur_a
+        bound = dot(n_a, gap) - hangs_over_b(nearest, pair, pose, place, cones, n_a)[0] - blur_a
         if bound > best:
             best, normal = bound, n_a
     if dot(n_b, n_b) > 0.5:
         n = scale(-1.0, rotate(pose.R, n_b))
-        bound = dot(n, gap) - hangs_over_a(pair, place, cones, n)[0] - blur_b
+        bound = dot(n, gap) - hangs_over_a(nearest, pair, place, cones, n)[0] - blur_b
         if bound > best:
             best, normal = bound, n
     return d, lowered(pair, pose, cones, best), normal, blur_a + blur_b

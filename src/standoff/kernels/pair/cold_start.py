@@ -12,12 +12,12 @@ import numpy as np
 
 from standoff.kernels.algebra.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 from standoff.kernels.body import layout as L
-from standoff.kernels.compiler.decorators import kernel, shared
+from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.pair.certified import UNCERTIFIED, settle_and_weigh
 from standoff.kernels.pair.descent import pair_jets
 from standoff.kernels.pair.events import RESTARTS, exhausted
 from standoff.kernels.tolerances import LEAST_DIVISOR, MIXING
-from standoff.kernels.values import ORIGIN, Found, Place, Side, resting, together
+from standoff.kernels.values import NO_CHART, ORIGIN, Found, Place, Side, resting, together
 
 MAX_STARTS = 13
 GILBERT_STEPS = 40
@@ -90,38 +90,73 @@ def nearest_facing(pair, pose):
     return at_i, at_j
 
 
-@kernel
-def nearest_to(ints, reals, z, normal):
+@small
+def any_sample(ints, k, chart):
+    """What `nearest_of` takes where every sample will do."""
+    return True
+
+
+@small
+def on_other_face(ints, k, chart):
+    """What it takes where a sample is to lie on a face, and not in a chart that is given."""
+    i = ints[L.SAMPLES] + 2 * k
+    return ints[i] < ints[L.N_FACES] and ints[i + 1] != chart
+
+
+@small
+def nearest_of(suits, ints, reals, z, normal, chart):
     """The nearest of a body's samples to a point, of those that it faces and that face it; `normal`
     is the outward one at the point, zero where it has none. All in the body's frame.
+
+    `suits` tells of a sample and the chart whether it may be taken; -1 if there is none.
     """
-    best, at = inf, 0
+    best, at = inf, -1
     for k in range(ints[L.N_SAMPLES]):
         gap = sub(z, sample_point(ints, reals, k))
         d2 = dot(gap, gap)
-        if d2 < best and dot(gap, sample_normal(ints, reals, k)) >= 0.0 and dot(gap, normal) <= 0.0:
+        nearer = d2 < best and suits(ints, k, chart)
+        if nearer and dot(gap, sample_normal(ints, reals, k)) >= 0.0 and dot(gap, normal) <= 0.0:
             best, at = d2, k
     return at
 
 
+@small
+def first_nearest(suits, ints, reals, z, normal):
+    """`nearest_of`, in any chart; the first sample if there is none."""
+    return max(nearest_of(suits, ints, reals, z, normal, NO_CHART), 0)
+
+
 @kernel
-def alternating(pair, pose):
+def nearest_to(ints, reals, z, normal):
+    """`first_nearest` of all samples."""
+    return first_nearest(any_sample, ints, reals, z, normal)
+
+
+@small
+def alternating_of(suits, pair, pose):
     """(i, j): samples of which either is the nearest to the other that faces it, from the middle of
-    A's box on. `nearest_facing` compares all with all, and is seldom better.
+    A's box on; of those that `suits` takes. `nearest_facing` compares all with all, and is seldom
+    better.
     """
     ia, ra, ib, rb = pair
     R, p = pose
     centre = (ra[L.BOX_CENTRE], ra[L.BOX_CENTRE + 1], ra[L.BOX_CENTRE + 2])
-    j = nearest_to(ib, rb, rotate_back(R, sub(centre, p)), ORIGIN)
+    j = first_nearest(suits, ib, rb, rotate_back(R, sub(centre, p)), ORIGIN)
     i = 0
     for _ in range(ALTERNATIONS):
         y, m = add(rotate(R, sample_point(ib, rb, j)), p), rotate(R, sample_normal(ib, rb, j))
-        i = nearest_to(ia, ra, y, m)
+        i = first_nearest(suits, ia, ra, y, m)
         z = rotate_back(R, sub(sample_point(ia, ra, i), p))
-        last, j = j, nearest_to(ib, rb, z, rotate_back(R, sample_normal(ia, ra, i)))
+        last, j = j, first_nearest(suits, ib, rb, z, rotate_back(R, sample_normal(ia, ra, i)))
         if j == last:
             break
     return i, j
+
+
+@kernel
+def alternating(pair, pose):
+    """`alternating_of` all samples."""
+    return alternating_of(any_sample, pair, pose)
 
 
 @kernel

@@ -13,19 +13,30 @@ from standoff.kernels.algebra.vectors import cross, dot, norm, rotate, scale, su
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_normal, dimension, pair_span
 from standoff.kernels.body.trimming import NO_HIT
-from standoff.kernels.compiler.decorators import kernel, shared, stack_matrix, stack_reals
+from standoff.kernels.compiler.decorators import kernel, shared, small, stack_matrix, stack_reals
 from standoff.kernels.pair.certificate import (
     CIRCLE,
     cones_at,
     into_b,
-    nearest_of_a,
-    nearest_of_b,
+    nearest_normal,
 )
 from standoff.kernels.pair.descent import pair_jets, recentre, walk_pair
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, exhausted
 from standoff.kernels.pair.system import contact_feedforward, contact_jacobian, contact_residual
 from standoff.kernels.tolerances import CONTACT_STEPS, NEAR_CONTACT, PIVOT
 from standoff.kernels.values import STILL, Place, Vector, moved, of_origin, side_of
+
+
+@small
+def nearest_of_a(pair, place, cones, n):
+    """`nearest_normal` of A."""
+    return nearest_normal(pair.ints_a, pair.reals_a, place.feature_a, cones.a, n)
+
+
+@small
+def nearest_of_b(pair, place, cones, m):
+    """`nearest_normal` of B, in B's frame."""
+    return nearest_normal(pair.ints_b, pair.reals_b, place.feature_b, cones.b, m)
 
 
 @kernel
