@@ -103,6 +103,8 @@ SMOOTH_CORRECTIONS = 3
 # Evaluations of both surfaces that a smooth cold query makes before it leaves a row to the general
 # one. Most take five; those that go on in other charts, or halve a step, take more.
 SMOOTH_LOOKS = 16
+# It halves a step from where it went on in another chart so often, to stay in that.
+STAYING = 4
 
 # Surfaces closer than TOUCHING scales, with no positive lower bound, touch or overlap.
 TOUCHING = 1e-13

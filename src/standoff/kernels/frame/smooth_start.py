@@ -21,6 +21,7 @@ from standoff.kernels.frame.smooth import (
     NO_FALL,
     Fall,
     inside_feature,
+    inside_features,
     is_enough,
     look,
     newton_at,
@@ -37,7 +38,7 @@ from standoff.kernels.pair.cold_start import (
 )
 from standoff.kernels.state.arrays import CONVERGED
 from standoff.kernels.state.tracked import Shown
-from standoff.kernels.tolerances import AT_REST, EPS, SMOOTH_LOOKS
+from standoff.kernels.tolerances import AT_REST, EPS, SMOOTH_LOOKS, STAYING
 from standoff.kernels.values import (
     NO_CHART,
     NO_RATES,
@@ -63,25 +64,36 @@ class Ended(NamedTuple):
 
 
 @small
-def beside(ints, reals, side, dp, dq, y):
-    """(left, side): a side after a step or, where that leaves its chart, the sample of another
-    chart nearest to the other body's point y; `NO_SIDE` if none faces it. In the body's frame."""
-    ahead = Side(side.feature, side.chart, side.p + dp, side.q + dq)
-    if inside_feature(2, ints, reals, ahead):
-        return False, ahead
-    k = nearest_of(on_other_face, ints, reals, y, ORIGIN, side.chart)
-    return True, at_sample(ints, reals, k) if k >= 0 else NO_SIDE
+def part_inside(pair, place, step, halvings):
+    """The part of a step that ends well inside both faces, halved so often at most; 0 if it does
+    not."""
+    s = 1.0
+    for _ in range(halvings + 1):
+        if inside_features(FACES, pair, moved(place, s, step)):
+            return s
+        s *= 0.5
+    return 0.0
 
 
 @small
-def stepped(pair, pose, place, jets, step):
-    """(left, place): `beside` of both bodies."""
+def beside(ints, reals, side, dp, dq, y):
+    """A side after a step or, where that leaves its chart, the sample of another chart nearest to
+    the other body's point y, in the body's frame; `NO_SIDE` if none faces it."""
+    ahead = Side(side.feature, side.chart, side.p + dp, side.q + dq)
+    if inside_feature(2, ints, reals, ahead):
+        return ahead
+    k = nearest_of(on_other_face, ints, reals, y, ORIGIN, side.chart)
+    return at_sample(ints, reals, k) if k >= 0 else NO_SIDE
+
+
+@small
+def in_other_chart(pair, pose, place, jets, step):
+    """`beside` of both bodies."""
     ia, ra, ib, rb = pair
     x_a, x_b = jets[0][0], jets[1][0]
-    left_a, a = beside(ia, ra, side_of(place, 0), step[0], step[1], x_b)
+    a = beside(ia, ra, side_of(place, 0), step[0], step[1], x_b)
     opposite = rotate_back(pose.R, sub(x_a, pose.p))
-    left_b, b = beside(ib, rb, side_of(place, 1), step[2], step[3], opposite)
-    return left_a or left_b, together(a, b)
+    return together(a, beside(ib, rb, side_of(place, 1), step[2], step[3], opposite))
 
 
 @small
@@ -95,9 +107,10 @@ def descended_from(look_a, look_b, pair, pose, place):
     """The end of a descent from a place in charts.
 
     Steps are halved until they lower E, but for those after which a point goes on in another chart:
-    E may be greater there.
+    E may be greater there. The next step from there is first halved so that it stays: it may be too
+    long, as the last one was, and lead back for ever.
     """
-    done, looks = False, 0
+    done, looks, halvings = False, 0, 0
     trial, s, fall = place, 1.0, NO_FALL
     while True:
         looked = look(look_a, look_b, pair, pose, trial)
@@ -113,12 +126,15 @@ def descended_from(look_a, look_b, pair, pose, place):
         newton = newton_at(looked, at)
         if done or not newton.safe:
             break
-        s, fall = 1.0, newton.fall
-        left, trial = stepped(pair, pose, place, looked.jets, fall.step)
-        if left:
+        fall = newton.fall
+        s = part_inside(pair, place, fall.step, halvings)
+        if s > 0.0:
+            halvings, trial = 0, moved(place, s, fall.step)
+        else:
+            halvings, trial = STAYING, in_other_chart(pair, pose, place, looked.jets, fall.step)
             fall = Fall(fall.step, inf, fall.descent)
-        if not has_charts(trial):
-            break
+            if not has_charts(trial):
+                break
     return Ended(done, looks, place, looked)
 
 
