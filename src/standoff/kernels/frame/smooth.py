@@ -273,7 +273,12 @@ def slope_at(pair, pose, looked):
 @small
 def newton_at(looked, at):
     """Newton's step, of any use only if it is safe."""
-    H = hessian(looked.jets[0], looked.jets[1])
+    return newton_by(hessian(looked.jets[0], looked.jets[1]), at)
+
+
+@small
+def newton_by(H, at):
+    """`newton_at`, by a Hessian."""
     factors = ldl(H)
     safe, _ = plainly_definite(at.metrics, H, factors[0])
     safe = at.distance > TOUCHING * at.span and at.slope > 0.0 and safe

@@ -25,6 +25,7 @@ from standoff.kernels.frame.smooth import (
     is_enough,
     look,
     newton_at,
+    newton_by,
     proven,
     slope_at,
     write_counts,
@@ -36,6 +37,7 @@ from standoff.kernels.pair.cold_start import (
     nearest_of,
     on_other_face,
 )
+from standoff.kernels.pair.system import covariant_hessian
 from standoff.kernels.state.arrays import CONVERGED
 from standoff.kernels.state.tracked import Shown
 from standoff.kernels.tolerances import AT_REST, EPS, SMOOTH_LOOKS, STAYING
@@ -124,6 +126,8 @@ def descended_from(look_a, look_b, pair, pose, place):
         place, at = trial, slope_at(pair, pose, looked)
         done = at.slope <= AT_REST * EPS * at.span
         newton = newton_at(looked, at)
+        if not newton.safe:
+            newton = newton_by(covariant_hessian(looked.jets[0], looked.jets[1]), at)
         if done or not newton.safe:
             break
         fall = newton.fall
