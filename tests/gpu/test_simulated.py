@@ -35,6 +35,23 @@ poses[3, 0, 3] = np.nan
 found, mine = gpu.distances(a, b, rest, poses), so.distances(a, b, rest, poses)
 assert (found.rows.view(np.int64) == mine.rows.view(np.int64)).all()
 assert list(found.errors) == [3] and found.distance[1] < 0.0 and found.certified[[0, 2, 4]].all()
+assert found.by_threads == 3
+"""
+SMOOTH = """
+from standoff import gpu
+from standoff_studies.kinds import nurbs_ellipsoid
+a, b = nurbs_ellipsoid(0.5, 0.8, 0.9), nurbs_ellipsoid(0.15, 0.3, 0.2)
+poses[1, :3, 3] = 0.2
+found, mine = gpu.distances(a, b, rest, poses), so.distances(a, b, rest, poses)
+assert found.by_threads == 4 and found.distance[1] < 0.0 and found.certified[[0, 2, 3, 4]].all()
+assert (found.status == mine.status).all()
+assert (found.rows[1].view(np.int64) == mine.rows[1].view(np.int64)).all()
+for name in ("distance", "point_a", "point_b", "normal", "lower_bound", "upper_bound"):
+    there, here = getattr(found, name), getattr(mine, name)
+    np.testing.assert_allclose(there, here, rtol=0.0, atol=1e-12 * (a.size + b.size))
+lens = so.shapes.lens(0.4, 0.1, rounding=0.05)
+found, mine = gpu.distances(a, a, rest, poses[:1]), gpu.distances(lens, lens, rest, poses[:1])
+assert found.by_threads == 1 and mine.bodies == (lens, lens)
 """
 FRAMES = """
 from standoff import gpu
@@ -92,7 +109,7 @@ def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
 
 
 @there
-@pytest.mark.parametrize("code", [COLD, FRAMES], ids=["cold", "frames"])
+@pytest.mark.parametrize("code", [COLD, SMOOTH, FRAMES], ids=["cold", "smooth", "frames"])
 def test_threads_in_the_simulator(code):
     done = run(BODIES + code, **SIMULATED)
     assert done.returncode == 0, done.stderr
@@ -104,7 +121,7 @@ def test_what_is_refused():
     assert done.returncode == 0, done.stderr
     told = done.stdout.splitlines()
     expected = [
-        "is not a whole ellipsoid", "two bodies of patches of spheres", "without a horizon",
+        "cold rows of two bodies of patches", "frames of two bodies of patches", "without a horizon",
         "states is empty", "poses_b has 5 poses: give 2", r"poses_b\[0\] is not a pose",
         r"twists_b has the shape \(3, 6\): give \(2, 6\)", "twists_b holds numbers", "dt = -1.0",
     ]  # fmt: skip
