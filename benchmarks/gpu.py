@@ -28,6 +28,7 @@ from standoff.geometry import ellipsoid_octants
 from standoff.gpu import cold, compiler, device_arrays, threads, tracks
 from standoff.gpu.resources import Resources, compiled, resources_of
 from standoff.kernels.state import arrays as K
+from standoff.tracking.many_states import TrackerStates
 from standoff.tracking.reached import cold_table
 from standoff_studies.kinds import nurbs_ellipsoid
 
@@ -123,7 +124,8 @@ class Frames:
         self.a, self.b = bodies_of(kernel)
         self.tracker, self.poses = so.Tracker(self.a, self.b, DT), drawn(n, REACH)
         self.states = [self.tracker.start(np.eye(4), pose) for pose in self.poses]
-        self.blocks, self.done = tracks.blocks_of(self.states), np.zeros(n, dtype=np.int64)
+        self.blocks = TrackerStates.of(self.states).blocks.copy()
+        self.done = np.zeros(n, dtype=np.int64)
         self.twist = np.array([SPEED, 0.0, 0.0, 0.0, SPEED, 0.0])
 
     def move(self) -> Array:

@@ -60,14 +60,14 @@ tracker = so.Tracker(a, b, 1e-3)
 states = [tracker.start(rest, pose) for pose in poses]
 rows = gpu.Tracks(tracker, states)
 twist = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-for frame in range(3):
+for frame in range(4):
     poses[:, 0, 3] += 1e-3
-    if frame == 2:
-        poses[1, :3, 3] = 0.2  # into each other: no thread makes that
+    if frame >= 2:
+        poses[1, :3, 3] = 0.2 - 0.01 * frame  # into each other: no thread makes that
     found = rows.step(rest, poses, twists_b=twist)
     states = [tracker.step(s, rest, p, twist_b=twist)[0] for s, p in zip(states, poses)]
     mine = np.array([state.proximity.row for state in states])
-    assert rows.by_threads == (4 if frame == 2 else 5)
+    assert rows.by_threads == (4 if frame >= 2 else 5)
     # this tracker's frames are the general ones: the smooth ones are called by address
     for part in (slice(0, K.OUT_MODE), slice(K.OUT_Q, K.UPPER_BOUND + 1)):
         np.testing.assert_allclose(found[:, part], mine[:, part], rtol=1e-9, atol=1e-12)
@@ -75,6 +75,13 @@ for frame in range(3):
     theirs = np.array([state.data for state in states])
     np.testing.assert_allclose(own, theirs, rtol=1e-6, atol=1e-9)
 assert found[1, 0] < 0.0
+before = rows.states  # a value, from which others go on
+assert before[1].proximity.row[0] == states[1].proximity.row[0] == found[1, 0]
+assert len(before[1].proximity._out) > K.N_BLOCK  # with what it has kept of its proof
+more = gpu.Tracks(tracker, before)
+assert np.array_equal(more.step(rest, poses), rows.step(rest, poses), equal_nan=True)
+mine, _ = tracker.step(before[1], rest, poses[1])
+assert mine.proximity.row[0] == more.states[1].proximity.row[0]
 """
 REFUSED = """
 from standoff import gpu
@@ -121,7 +128,7 @@ def test_what_is_refused():
     assert done.returncode == 0, done.stderr
     told = done.stdout.splitlines()
     expected = [
-        "cold rows of two bodies of patches", "frames of two bodies of patches", "without a horizon",
+        "cold rows of two bodies", "frames of two bodies of patches", "without a horizon",
         "states is empty", "poses_b has 5 poses: give 2", r"poses_b\[0\] is not a pose",
         r"twists_b has the shape \(3, 6\): give \(2, 6\)", "twists_b holds numbers", "dt = -1.0",
     ]  # fmt: skip
