@@ -11,7 +11,7 @@ import standoff as so
 from draws import draws
 from standoff.kernels.frame import smooth, smooth_start
 from standoff.kernels.frame.smooth import FACES, inside_features
-from standoff.kernels.frame.smooth_start import NO_SIDE, beside, has_charts, part_inside
+from standoff.kernels.frame.smooth_start import SIDELESS, beside, has_charts, part_inside
 from standoff.kernels.pair import cold_start
 from standoff.kernels.pair.cold_start import at_sample, on_other_face, sample_point
 from standoff.kernels.state import arrays as K
@@ -114,7 +114,7 @@ def test_a_point_that_leaves_its_chart_goes_on_in_another():
     assert left == at_sample(ints, reals, nearest(ints, reals, y, side.chart))
     assert left.chart not in (side.chart, NO_CHART)
     # from within no sample faces the point
-    assert beside(ints, reals, side, 9.0, 0.0, (0.0, 0.0, 0.0)) == NO_SIDE
+    assert beside(ints, reals, side, 9.0, 0.0, (0.0, 0.0, 0.0)) == SIDELESS
     assert has_charts(place)
     assert not has_charts(place._replace(chart_b=NO_CHART))
 
