@@ -24,16 +24,19 @@ from numpy.typing import NDArray
 import standoff as so
 from benchmarks.lanes import drawn
 from benchmarks.ptx_in_c import compiled_in_c
+from standoff.geometry import ellipsoid_octants
 from standoff.gpu import cold, compiler, device_arrays, threads, tracks
 from standoff.gpu.resources import Resources, compiled, resources_of
 from standoff.kernels.state import arrays as K
+from standoff.tracking.many_states import TrackerStates
 from standoff.tracking.reached import cold_table
 from standoff_studies.kinds import nurbs_ellipsoid
 
 Array = NDArray[np.float64]
 AXES = (0.5, 0.8, 0.9), (0.15, 0.3, 0.2)
+LENS = (0.4, 0.1)
 REACH = (1.3, 4.0)
-"""Between the origins, length: the ellipsoids are apart."""
+"""Between the origins, length: the bodies are apart."""
 DT, SPEED = 1e-3, 1.0
 """Of tracked frames: s, length/s."""
 ROUNDS, LAUNCHES = 5, 10
@@ -63,24 +66,43 @@ GPUS = {
 # What a row moves to and from the GPU's memory, bytes: a pose, an answer and its mark; what is
 # given, read and copied, the state, read and written, the answer and its mark.
 MOVED = {
-    threads.COLD: 8 * (16 + K.N_OUT + 1),
+    "cold": 8 * (16 + K.N_OUT + 1),
     "frames": 8 * (2 * threads.N_GIVEN + 2 * K.N_STATE + K.N_OUT + 1),
 }
 
 
+MEASURED = (threads.ELLIPSOIDS, "cold_nurbs_4", "frames_sphere", "frames_nurbs_4")
+"""Kernels whose operations are counted, and which are timed on a GPU."""
+
+
 def bodies_of(kernel: str) -> tuple[so.Body, so.Body]:
-    """The pair that a kernel is tried with."""
-    if kernel in (threads.COLD, "frames_sphere"):
-        return so.shapes.ellipsoid(*AXES[0]), so.shapes.ellipsoid(*AXES[1])
-    a, b = nurbs_ellipsoid(*AXES[0]), nurbs_ellipsoid(*AXES[1])
+    """The pair that a kernel is tried with: ellipsoids, but for cold rows of patches of spheres,
+    which are a lens's too."""
+    a, b = so.shapes.ellipsoid(*AXES[0]), so.shapes.ellipsoid(*AXES[1])
+    if kernel == "cold_sphere":
+        return a, so.shapes.lens(*LENS)
+    if "nurbs" not in kernel:
+        return a, b
+    degree = int(kernel[-1])
+    if degree == 4:
+        return nurbs_ellipsoid(*AXES[0]), nurbs_ellipsoid(*AXES[1])
+    a, b = (
+        so.Body.from_patches([each.elevated(degree, degree) for each in ellipsoid_octants(*axes)])
+        for axes in AXES
+    )
     return a, b
+
+
+def rows_of(kernel: str, n: int) -> Cold | Frames:
+    """Rows that a kernel is tried with."""
+    return Cold(kernel, n) if kernel.startswith("cold") else Frames(kernel, n)
 
 
 class Cold:
     """Rows of a cold query, as the processor or a GPU is given them."""
 
-    def __init__(self, n: int) -> None:
-        self.a, self.b = bodies_of(threads.COLD)
+    def __init__(self, kernel: str, n: int) -> None:
+        self.a, self.b = bodies_of(kernel)
         self.poses, self.table = drawn(n, REACH), cold_table(self.a, self.b)
         self.rows, self.done = np.full((n, K.N_OUT), np.nan), np.zeros(n, dtype=np.int64)
 
@@ -102,7 +124,8 @@ class Frames:
         self.a, self.b = bodies_of(kernel)
         self.tracker, self.poses = so.Tracker(self.a, self.b, DT), drawn(n, REACH)
         self.states = [self.tracker.start(np.eye(4), pose) for pose in self.poses]
-        self.blocks, self.done = tracks.blocks_of(self.states), np.zeros(n, dtype=np.int64)
+        self.blocks = TrackerStates.of(self.states).blocks.copy()
+        self.done = np.zeros(n, dtype=np.int64)
         self.twist = np.array([SPEED, 0.0, 0.0, 0.0, SPEED, 0.0])
 
     def move(self) -> Array:
@@ -150,9 +173,9 @@ def judgement(rows: Array, mine: Array, a: so.Body, b: so.Body) -> dict[str, flo
 
 def operations(kernel: str, n: int = 200) -> dict[str, float]:
     """Double operations of a row, by kind: counted, by the PTX in C."""
-    rows = Cold(n) if kernel == threads.COLD else Frames(kernel, n)
+    rows = rows_of(kernel, n)
     run = compiled_in_c(compiled(kernel, (9, 0))[0])
-    if kernel != threads.COLD:
+    if isinstance(rows, Frames):
         run(rows.arguments(), n)  # the first frame behind a start corrects more
     return {kind: count / n for kind, count in run(rows.arguments(), n).items()}
 
@@ -188,12 +211,12 @@ def compile_all(targets: list[tuple[int, int]]) -> list[dict[str, Any]]:
                 f"PTX, {found.calls} calls, {found.seconds:.0f} s"
             )
             told.append(found._asdict())
-    for kernel in (threads.COLD, "frames_sphere", "frames_nurbs_4"):
+    for kernel in MEASURED:
         counts = operations(kernel)
         print(f"{kernel}: a row makes", ", ".join(f"{v:.0f} {k}" for k, v in counts.items()))
         registers = resources_of(kernel).registers
         for name, gpu in GPUS.items():
-            by_work, by_memory = bound(counts, MOVED.get(kernel, MOVED["frames"]), gpu)
+            by_work, by_memory = bound(counts, MOVED[kernel.partition("_")[0]], gpu)
             fit = warps(registers, gpu)
             print(
                 f"  {name}: at most {min(by_work, by_memory):.1e} rows a second by arithmetic "
@@ -217,17 +240,18 @@ def timed(work: Callable[[], None], n: int) -> float:
     return n / median(taken)
 
 
-def measured_cold(n: int) -> dict[str, float]:
+def measured_cold(kernel: str, n: int) -> dict[str, float]:
     """Rows a second of cold queries, on the GPU and with the copies, and the judgement."""
-    rows = Cold(n)
+    rows = Cold(kernel, n)
     pair, options = device_arrays.pair_and_options(rows.table.arrays)
     rest, there = device_arrays.sent(np.eye(4)[None]), device_arrays.sent(rows.poses)
     outs, done = device_arrays.empty(rows.rows.shape), device_arrays.empty((n,), np.int64)
     arguments = pair, options, rest, there, outs, done
-    fast = timed(lambda: threads.start_threads(threads.COLD, n, arguments), n)
+    fast = timed(lambda: threads.start_threads(kernel, n, arguments), n)
     rows.rows[:], rows.done[:] = outs.copy_to_host(), done.copy_to_host()
     given, answers = (np.eye(4)[None], rows.poses), np.empty_like(rows.rows)
-    whole = timed(lambda: cold.answer_on_gpu(rows.table, given, answers), n)
+    answering = cold.Answering(kernel)
+    whole = timed(lambda: answering(rows.table, given, answers), n)
     return {"rate": fast, "rate with copies": whole, "share": rows.done.mean(), **rows.judged()}
 
 
@@ -264,7 +288,7 @@ def measured_mujoco(n: int, iterations: int, device: str = "cuda") -> dict[str, 
     import warp
     from scipy.spatial.transform import Rotation
 
-    rows = Cold(n)
+    rows = Cold(threads.ELLIPSOIDS, n)
     sizes = [" ".join(str(x) for x in axes) for axes in AXES]
     model = mujoco.MjModel.from_xml_string(MUJOCO.format(iterations, *sizes))
     places = np.zeros((n, 14))
@@ -301,9 +325,12 @@ def measured_mujoco(n: int, iterations: int, device: str = "cuda") -> dict[str, 
 def measure(n: int) -> dict[str, dict[str, float]]:
     """Print and return what a GPU does."""
     compiler.check_there()
-    found = {threads.COLD: measured_cold(n)}
-    for kernel in ("frames_sphere", "frames_nurbs_4"):
-        found[kernel] = measured_frames(kernel, min(n, 100_000))
+    found = {}
+    for kernel in MEASURED:
+        cold_rows = kernel.startswith("cold")
+        found[kernel] = (
+            measured_cold(kernel, n) if cold_rows else measured_frames(kernel, min(n, 100_000))
+        )
     try:
         if compiler.SIMULATED:
             raise ModuleNotFoundError("Python has the GPU's place")

@@ -35,6 +35,23 @@ poses[3, 0, 3] = np.nan
 found, mine = gpu.distances(a, b, rest, poses), so.distances(a, b, rest, poses)
 assert (found.rows.view(np.int64) == mine.rows.view(np.int64)).all()
 assert list(found.errors) == [3] and found.distance[1] < 0.0 and found.certified[[0, 2, 4]].all()
+assert found.by_threads == 3
+"""
+SMOOTH = """
+from standoff import gpu
+from standoff_studies.kinds import nurbs_ellipsoid
+a, b = nurbs_ellipsoid(0.5, 0.8, 0.9), nurbs_ellipsoid(0.15, 0.3, 0.2)
+poses[1, :3, 3] = 0.2
+found, mine = gpu.distances(a, b, rest, poses), so.distances(a, b, rest, poses)
+assert found.by_threads == 4 and found.distance[1] < 0.0 and found.certified[[0, 2, 3, 4]].all()
+assert (found.status == mine.status).all()
+assert (found.rows[1].view(np.int64) == mine.rows[1].view(np.int64)).all()
+for name in ("distance", "point_a", "point_b", "normal", "lower_bound", "upper_bound"):
+    there, here = getattr(found, name), getattr(mine, name)
+    np.testing.assert_allclose(there, here, rtol=0.0, atol=1e-12 * (a.size + b.size))
+lens = so.shapes.lens(0.4, 0.1, rounding=0.05)
+found, mine = gpu.distances(a, a, rest, poses[:1]), gpu.distances(lens, lens, rest, poses[:1])
+assert found.by_threads == 1 and mine.bodies == (lens, lens)
 """
 FRAMES = """
 from standoff import gpu
@@ -43,14 +60,14 @@ tracker = so.Tracker(a, b, 1e-3)
 states = [tracker.start(rest, pose) for pose in poses]
 rows = gpu.Tracks(tracker, states)
 twist = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-for frame in range(3):
+for frame in range(4):
     poses[:, 0, 3] += 1e-3
-    if frame == 2:
-        poses[1, :3, 3] = 0.2  # into each other: no thread makes that
+    if frame >= 2:
+        poses[1, :3, 3] = 0.2 - 0.01 * frame  # into each other: no thread makes that
     found = rows.step(rest, poses, twists_b=twist)
     states = [tracker.step(s, rest, p, twist_b=twist)[0] for s, p in zip(states, poses)]
     mine = np.array([state.proximity.row for state in states])
-    assert rows.by_threads == (4 if frame == 2 else 5)
+    assert rows.by_threads == (4 if frame >= 2 else 5)
     # this tracker's frames are the general ones: the smooth ones are called by address
     for part in (slice(0, K.OUT_MODE), slice(K.OUT_Q, K.UPPER_BOUND + 1)):
         np.testing.assert_allclose(found[:, part], mine[:, part], rtol=1e-9, atol=1e-12)
@@ -58,6 +75,13 @@ for frame in range(3):
     theirs = np.array([state.data for state in states])
     np.testing.assert_allclose(own, theirs, rtol=1e-6, atol=1e-9)
 assert found[1, 0] < 0.0
+before = rows.states  # a value, from which others go on
+assert before[1].proximity.row[0] == states[1].proximity.row[0] == found[1, 0]
+assert len(before[1].proximity._out) > K.N_BLOCK  # with what it has kept of its proof
+more = gpu.Tracks(tracker, before)
+assert np.array_equal(more.step(rest, poses), rows.step(rest, poses), equal_nan=True)
+mine, _ = tracker.step(before[1], rest, poses[1])
+assert mine.proximity.row[0] == more.states[1].proximity.row[0]
 """
 REFUSED = """
 from standoff import gpu
@@ -92,7 +116,7 @@ def run(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
 
 
 @there
-@pytest.mark.parametrize("code", [COLD, FRAMES], ids=["cold", "frames"])
+@pytest.mark.parametrize("code", [COLD, SMOOTH, FRAMES], ids=["cold", "smooth", "frames"])
 def test_threads_in_the_simulator(code):
     done = run(BODIES + code, **SIMULATED)
     assert done.returncode == 0, done.stderr
@@ -104,7 +128,7 @@ def test_what_is_refused():
     assert done.returncode == 0, done.stderr
     told = done.stdout.splitlines()
     expected = [
-        "is not a whole ellipsoid", "two bodies of patches of spheres", "without a horizon",
+        "cold rows of two bodies", "frames of two bodies of patches", "without a horizon",
         "states is empty", "poses_b has 5 poses: give 2", r"poses_b\[0\] is not a pose",
         r"twists_b has the shape \(3, 6\): give \(2, 6\)", "twists_b holds numbers", "dt = -1.0",
     ]  # fmt: skip

@@ -10,7 +10,7 @@ NAMES: dict[Kind | None, str] = {
     SPHERE: "sphere",
     **{(L.NURBS, degree): f"nurbs_{degree}" for degree in (2, 3, 4, 5)},
 }
-"""Of the kinds in ``threads.LOOKS``."""
+"""Of the kinds in ``threads.SEES``."""
 
 THERE_ARE = "patches of spheres, or of NURBS of one degree from 2 to 5"
 

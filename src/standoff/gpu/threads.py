@@ -91,7 +91,7 @@ class Kernel(NamedTuple):
     signature: tuple[Any, ...]
 
 
-LOOKS = {
+SEES = {
     "sphere": smooth.on_sphere,
     "nurbs_2": smooth.on_nurbs_2,
     "nurbs_3": smooth.on_nurbs_3,
@@ -105,8 +105,8 @@ COLD = (PAIR, REALS, POSES, POSES, ROWS, INTS)
 FRAMES = (PAIR, REALS, ROWS, ROWS, INTS)
 KERNELS = {
     ELLIPSOIDS: Kernel(cold_ellipsoids, COLD),
-    **{f"cold_{kind}": Kernel(_cold(look), COLD) for kind, look in LOOKS.items()},
-    **{f"frames_{kind}": Kernel(_frames(look), FRAMES) for kind, look in LOOKS.items()},
+    **{f"cold_{kind}": Kernel(_cold(look), COLD) for kind, look in SEES.items()},
+    **{f"frames_{kind}": Kernel(_frames(look), FRAMES) for kind, look in SEES.items()},
 }
 """All that is compiled for a GPU, by name."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,10 +14,11 @@ from standoff.gpu.compiler import check_there
 from standoff.gpu.device_arrays import empty, pair_and_options, sent
 from standoff.gpu.kinds import THERE_ARE, kind_of
 from standoff.gpu.threads import N_GIVEN, start_threads
-from standoff.kernels.entries import tracker as entries
+from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
 from standoff.tracking.laws import PredictorCorrector
+from standoff.tracking.many_states import TrackerStates
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
@@ -30,44 +31,55 @@ class Tracks:
     """n states of one tracker on a GPU, which step at once.
 
     A frame in which both witness points stay on faces is made by a thread, with the functions that
-    make it on the processor; another frame, as one that crosses an edge, by the processor. Either
-    way it has its own proof.
+    make it on the processor; the others, as those that cross an edge, by ``Tracker.step_many``.
+    Either way each has its own proof.
+
+    It changes with each step, where ``step_many`` takes states and returns others: a thread reads
+    and writes a row where it lies, and a copy of all rows for each frame would take as long on a
+    GPU as the frame. `states` is a value.
 
     Parameters
     ----------
     tracker : Tracker
         Of two bodies of patches of spheres (ellipsoids, lenses), or of NURBS of one degree from 2
         to 5, by the law `PredictorCorrector` without a horizon.
-    states : sequence of TrackerState
-        Where the rows begin, of this tracker.
+    states : TrackerStates or sequence of TrackerState
+        Where the rows begin, of this tracker: as ``tracker.start_many`` finds them.
 
     Attributes
     ----------
-    blocks : (n, N_BLOCK) array
-        What each row's last frame has left, by ``standoff.kernels.state.arrays``; a copy.
     by_threads : int
         Number of the last step's frames that were made on the GPU.
 
     Raises
     ------
+    TypeError
+        Something that is no state.
     ValueError
-        Another law or other faces; no state; no GPU.
+        Another law or other faces; no state, or one of other bodies; no GPU.
     """
 
-    def __init__(self, tracker: Tracker, states: Sequence[TrackerState]) -> None:
+    def __init__(self, tracker: Tracker, states: TrackerStates | Sequence[TrackerState]) -> None:
         self._kernel = kernel_of(tracker)
-        if len(states) == 0:
-            raise StandoffError("states is empty: give at least one.", "states", states)
-        for state in states:
-            tracker.check_state(state)
+        begun = states if isinstance(states, TrackerStates) else TrackerStates.of(states)
+        tracker.check_state(begun[0])
         check_there()
         self.tracker, self.by_threads = tracker, 0
-        self._blocks = sent(blocks_of(states))
-        self._done = empty((len(states),), np.int64)
+        self._blocks = sent(begun.blocks)
+        self._done = empty((len(begun),), np.int64)
+        keeping = np.flatnonzero(begun.polytopes[:, 0])
+        self._kept = Kept(keeping, begun.polytopes[keeping])
         self._pair, self._options = pair_and_options(tracker.reached.table.arrays)
 
     @property
+    def states(self) -> TrackerStates:
+        """The states after the last step: a copy, as a value."""
+        return self._states(np.arange(self._blocks.shape[0]), self.blocks)
+
+    @property
     def blocks(self) -> Array:
+        """(n, N_BLOCK) what each row's last frame has left, by ``standoff.kernels.state.arrays``; a
+        copy."""
         found: Array = self._blocks.copy_to_host()
         return found
 
@@ -111,7 +123,7 @@ class Tracks:
         n = self._blocks.shape[0]
         given = given_rows(n, (poses_a, poses_b), h, (twists_a, twists_b))
         self.start_step(sent(given))
-        return self._finished()
+        return self._finished(given)
 
     def start_step(self, given: Any) -> None:
         """Let the threads begin with what is given (n, 38), on the GPU: poses, twists, time, mark.
@@ -121,24 +133,54 @@ class Tracks:
         arguments = self._pair, self._options, given, self._blocks, self._done
         start_threads(self._kernel, self._blocks.shape[0], arguments)
 
-    def _finished(self) -> Array:
+    def _finished(self, given: Array) -> Array:
         """Make the other frames here, and return the answers."""
         blocks = self.blocks
         left = np.flatnonzero(self.done == 0)
         self.by_threads = len(blocks) - len(left)
-        for k in left:
-            blocks[k] = stepped_here(self.tracker, blocks[k])
         if len(left):
+            made = self._stepped_here(self._states(left, blocks), given[left])
+            blocks[left] = made.blocks
             self._blocks.copy_to_device(blocks)
+            self._kept = Kept(left, made.polytopes)
+        else:
+            self._kept = NOTHING_KEPT
         return blocks[:, : K.N_OUT]
 
+    def _states(self, rows: NDArray[np.int64], blocks: Array) -> TrackerStates:
+        """Some rows of all blocks as a value."""
+        bodies, marks = (self.tracker.a, self.tracker.b), np.zeros(len(rows), dtype=np.int64)
+        return TrackerStates(bodies, blocks[rows], self._kept.of(rows), marks, {})
 
-def blocks_of(states: Sequence[TrackerState]) -> Array:
-    """(n, N_BLOCK) what the threads begin with: the last answer and the state after it."""
-    blocks = np.zeros((len(states), K.N_BLOCK))
-    for block, state in zip(blocks, states, strict=True):
-        block[: K.BLOCK_MOTION] = state.proximity._out[: K.BLOCK_MOTION]
-    return blocks
+    def _stepped_here(self, states: TrackerStates, given: Array) -> TrackerStates:
+        """States after what is given of their frames."""
+        told = bool(given[0, K.N_MOTION + 1])
+        found, _ = self.tracker.step_many(
+            states,
+            given[:, K.POSE_A : K.POSE_B],
+            given[:, K.POSE_B : K.TWIST_A],
+            twists_a=given[:, K.TWIST_A : K.TWIST_B] if told else None,
+            twists_b=given[:, K.TWIST_B : K.N_MOTION] if told else None,
+            dt=given[:, K.N_MOTION],
+        )
+        return found
+
+
+class Kept(NamedTuple):
+    """What frames in penetration have kept of their proofs, of some rows."""
+
+    rows: NDArray[np.int64]  # ascending
+    polytopes: Array  # of these
+
+    def of(self, rows: NDArray[np.int64]) -> Array:
+        """(n, N_POLYTOPE) of rows, zero where nothing is kept."""
+        found = np.zeros((len(rows), N_POLYTOPE))
+        _, here, there = np.intersect1d(rows, self.rows, assume_unique=True, return_indices=True)
+        found[here] = self.polytopes[there]
+        return found
+
+
+NOTHING_KEPT = Kept(np.zeros(0, dtype=np.int64), np.zeros((0, N_POLYTOPE)))
 
 
 def given_rows(
@@ -162,16 +204,6 @@ def given_rows(
     given[:, K.N_MOTION] = h
     given[:, K.N_MOTION + 1] = twists[0] is not None or twists[1] is not None
     return given
-
-
-def stepped_here(tracker: Tracker, block: Array) -> Array:
-    """A block (N_BLOCK,) after a frame on the processor."""
-    room = np.zeros(K.N_LONG_BLOCK)
-    room[: K.N_BLOCK] = block
-    done = entries.step(tracker.reached.address, room)
-    if done != K.FINE:
-        raise AssertionError(f"a frame that was checked is refused: {done}")
-    return room[: K.N_BLOCK]
 
 
 def kernel_of(tracker: Tracker) -> str:

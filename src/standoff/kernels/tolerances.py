@@ -101,8 +101,8 @@ INNER_HALVINGS = 20
 # first ends a frame that was predicted by twists, the second most others.
 SMOOTH_CORRECTIONS = 3
 # Evaluations of both surfaces that a smooth cold query makes before it leaves a row to the general
-# one. Most take five; those that go on in other charts, or halve a step, take more.
-SMOOTH_LOOKS = 16
+# one. Most take six; those that go on in other charts, or halve a step as near contact, take more.
+SMOOTH_LOOKS = 24
 # It halves a step from where it went on in another chart so often, to stay in that.
 STAYING = 4
 

@@ -6,10 +6,9 @@ no boundary, no other chart, no switch, no flat direction, no contact. It calls 
 in the same order, with fewer cases. It is tried first and writes nothing unless it answers.
 """
 
-from math import inf
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.vectors import dot, norm, rotate_back, scale, sub, unit
+from standoff.kernels.algebra.vectors import dot, rotate_back, scale, sub, unit
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
@@ -19,7 +18,6 @@ from standoff.kernels.body.features import (
     has_collapsed,
     moved_jet,
     normal_of_kind,
-    pair_span,
     plane_conormal,
 )
 from standoff.kernels.body.jets import curve_jet, mapped_jet, sphere_jet, surface_jet
@@ -30,41 +28,34 @@ from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.answer import judge, write_answer
 from standoff.kernels.frame.inputs import moving
 from standoff.kernels.frame.prediction import feeds, kept_state, predict
+from standoff.kernels.frame.smooth_steps import (
+    NO_FALL,
+    at_rest,
+    is_enough,
+    newton_at,
+    rates_at,
+    slope_at,
+)
 from standoff.kernels.pair.certificate import ARC, SINGLE, Cones, NormalCone, certify_cones
 from standoff.kernels.pair.certified import CERTIFIED, outcome_of
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
-from standoff.kernels.pair.newton import (
-    ldl,
-    ldl_solve,
-    metric_norm,
-    negate,
-    pair_metric,
-    plainly_definite,
-)
-from standoff.kernels.pair.system import energy, feedforward, gradient, hessian, projection_errors
 from standoff.kernels.state.arrays import OUT_COUNTS
 from standoff.kernels.state.state import read_state, write_state
 from standoff.kernels.state.tracked import Shown, Tracked
 from standoff.kernels.tolerances import (
-    ARMIJO,
-    AT_REST,
-    ENERGY_NOISE,
     EPS,
     POLISHED,
     SHIFTED_GAP,
     SLOPE,
     SLOPE_NOISE,
     SMOOTH_CORRECTIONS,
-    TOUCHING,
 )
 from standoff.kernels.values import (
     NO_RATES,
     ORIGIN,
-    STILL,
     Found,
     Vector,
     moved,
-    of_origin,
     side_of,
 )
 
@@ -229,82 +220,6 @@ def both_held(dims, pose, looked, d, span, slope):
     if dims[0] == 1:
         return held(looked.ways[0], n, least)
     return held(looked.ways[1], scale(-1.0, rotate_back(pose.R, n)), least)
-
-
-class Slope(NamedTuple):
-    """How E = |dR|²/2 changes at a place."""
-
-    distance: float  # |dR|
-    span: float  # what its roundoff is measured by
-    g: Any  # gradient
-    metrics: Any
-    slope: float  # |g| in the bodies' metric
-
-
-class Fall(NamedTuple):
-    """A step of the four parameters, and what Armijo's rule asks of it."""
-
-    step: Any
-    energy: float  # E before it, with its roundoff; inf: nothing is asked
-    descent: float  # g.step
-
-
-class Newton(NamedTuple):
-    """Newton's step at a place."""
-
-    safe: bool  # is E plainly convex there, and not yet at rest nor in contact?
-    factors: Any  # of the Hessian
-    fall: Fall
-
-
-NO_FALL = Fall(NO_RATES, inf, 0.0)
-
-
-@small
-def slope_at(pair, pose, looked):
-    """What is known of E from the jets of a place."""
-    jet_a, jet_b = looked.jets
-    d = norm(looked.cones.gap)
-    g = gradient(projection_errors(jet_a, jet_b))
-    metrics = pair_metric(jet_a, jet_b)
-    return Slope(d, pair_span(pair, pose.p, d), g, metrics, metric_norm(metrics, g))
-
-
-@small
-def at_rest(at, tolerance):
-    """Is the slope as good as zero?"""
-    return at.slope <= max(AT_REST * EPS * at.span, tolerance * at.distance)
-
-
-@small
-def newton_at(looked, at):
-    """Newton's step, of any use only if it is safe."""
-    return newton_by(hessian(looked.jets[0], looked.jets[1]), at)
-
-
-@small
-def newton_by(H, at):
-    """`newton_at`, by a Hessian."""
-    factors = ldl(H)
-    safe, _ = plainly_definite(at.metrics, H, factors[0])
-    safe = at.distance > TOUCHING * at.span and at.slope > 0.0 and safe
-    g, step, d = at.g, negate(ldl_solve(factors, at.g)), at.distance
-    descent = g[0] * step[0] + g[1] * step[1] + g[2] * step[2] + g[3] * step[3]
-    before = 0.5 * d * d + ENERGY_NOISE * EPS * at.span * d
-    return Newton(safe, factors, Fall(step, before, descent))
-
-
-@small
-def rates_at(motion, jets, newton):
-    """The feedforward: rates of the parameters by the bodies' motion."""
-    b = feedforward(jets[0], jets[1], STILL, of_origin(motion))
-    return negate(ldl_solve(newton.factors, gradient(b)))
-
-
-@small
-def is_enough(fall, s, looked):
-    """Is E as low as Armijo's rule asks after a part s of a step?"""
-    return energy(looked.jets[0], looked.jets[1]) <= fall.energy + ARMIJO * s * fall.descent
 
 
 @small

@@ -18,17 +18,19 @@ from standoff.kernels.compiler.decorators import small
 from standoff.kernels.frame.answer import write_answer
 from standoff.kernels.frame.smooth import (
     FACES,
-    NO_FALL,
-    Fall,
     inside_feature,
     inside_features,
-    is_enough,
     look,
+    proven,
+    write_counts,
+)
+from standoff.kernels.frame.smooth_steps import (
+    NO_FALL,
+    Fall,
+    is_enough,
     newton_at,
     newton_by,
-    proven,
     slope_at,
-    write_counts,
 )
 from standoff.kernels.pair.cold_start import (
     alternating_of,
@@ -53,7 +55,7 @@ from standoff.kernels.values import (
     together,
 )
 
-NO_SIDE = Side(np.int64(0), NO_CHART, 0.0, 0.0)
+SIDELESS = Side(np.int64(0), NO_CHART, 0.0, 0.0)
 
 
 class Ended(NamedTuple):
@@ -80,12 +82,12 @@ def part_inside(pair, place, step, halvings):
 @small
 def beside(ints, reals, side, dp, dq, y):
     """A side after a step or, where that leaves its chart, the sample of another chart nearest to
-    the other body's point y, in the body's frame; `NO_SIDE` if none faces it."""
+    the other body's point y, in the body's frame; `SIDELESS` if none faces it."""
     ahead = Side(side.feature, side.chart, side.p + dp, side.q + dq)
     if inside_feature(2, ints, reals, ahead):
         return ahead
     k = nearest_of(on_other_face, ints, reals, y, ORIGIN, side.chart)
-    return at_sample(ints, reals, k) if k >= 0 else NO_SIDE
+    return at_sample(ints, reals, k) if k >= 0 else SIDELESS
 
 
 @small

@@ -17,15 +17,17 @@ from standoff.kernels.frame.prediction import predict
 from standoff.kernels.frame.record import Called
 from standoff.kernels.frame.smooth import (
     FACES,
-    Fall,
     Looked,
-    at_rest,
     finish,
     inside_features,
-    is_enough,
     may_be_smooth,
-    newton_at,
     proven_apart,
+)
+from standoff.kernels.frame.smooth_steps import (
+    Fall,
+    at_rest,
+    is_enough,
+    newton_at,
     rates_at,
     slope_at,
 )
