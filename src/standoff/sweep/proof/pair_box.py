@@ -220,9 +220,9 @@ class PairBox(ParameterBox):
         ways, taken = np.zeros(half.shape), np.full(len(half), self.rounding)
         known = np.abs(np.sum(found.normal * found.normal, axis=1) - 1.0) < UNIT_NORMAL
         points, radii = (found.point_a, found.point_b), getattr(found, "radii", (None, None))
-        for k, (mover, pose) in enumerate(zip(self.movers, found.poses, strict=True)):
-            outward = found.normal if k == 0 else -found.normal
-            given = mover.given_up(outward, points[k] - pose[:, :3, 3], at, half, radii[k])
+        for side, (mover, pose) in enumerate(zip(self.movers, found.poses, strict=True)):
+            outward = -found.normal if side else found.normal
+            given = mover.given_up(outward, points[side] - pose[:, :3, 3], at, half, radii[side])
             if mover.growth is not None:
                 seen = np.matmul(outward[:, None, :], pose[:, :3, :3])[:, 0]
                 rates = mover.growth.along(np.where(known[:, None], seen, 0.0))
