@@ -118,7 +118,7 @@ def test_they_sharpen_as_rectangles_halve(name: str) -> None:
     """A box with the square of the width, cones and curvatures with the width: a cone is then some
     percent wider than its normals, as its axis is nearly that of the least."""
     steps, angles = [], []
-    for seed in range(draws(8)):
+    for seed in range(draws(12)):
         rng = np.random.default_rng(seed)
         surface = KINDS[name].make(rng).transformed(*affine(rng, similar=True))
         if name in ("pole chart", "side chart"):  # away from the coordinate planes

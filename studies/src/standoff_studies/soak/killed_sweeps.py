@@ -3,7 +3,8 @@
 The job is run to its end once. Then, in another folder, the same command is begun again and again,
 and something of it is killed at a random moment: the command itself, one of its two worker
 processes, a worker of a cluster of Dask, or its scheduler. Where nothing was left to do some shards
-are removed first. In the end all files must be the same bytes.
+are removed first. In the end all files must be the same bytes. On Linux alone: workers are found by
+``/proc``.
 """
 
 from __future__ import annotations
