@@ -341,3 +341,32 @@ def test_the_lanes_make_frames_themselves(rng, monkeypatch):
     _, one = tracker.step(states[0], second[0][0], second[1][0])
     assert one._out[OUT_COUNTS + GENERAL_FRAMES] == 1.0
     assert by_lanes(answers).mean() > 0.95
+
+
+def test_poses_that_are_none_are_refused_in_lanes_too(rng):
+    tracker, n = so.Tracker(PART, TOOL), ROWS + 3
+    poses = turned(rng, n)
+    poses[:, :3, 3] = [1.6, 0.2, 0.1]
+    states = tracker.start_many(REST, poses)
+    for row, wrong in ((3, 1.5), (n - 1, -1.0)):  # stretched, mirrored
+        bad = poses.copy()
+        bad[row, :3, :3] *= wrong
+        with pytest.raises(ValueError, match=f"Row {row}: "):
+            tracker.step_many(states, REST, bad)
+    rounded = poses.astype(np.float32).astype(float)
+    _, answers = tracker.step_many(states, REST, rounded)
+    assert (answers.repaired == 1).all()
+
+
+def test_frames_beyond_a_horizon(rng):
+    """They are bounds alone, with lanes as without."""
+    law, n = so.PredictorCorrector(within=0.5), ROWS + 3
+    tracker = so.Tracker(PART, TOOL, law=law)
+    gaps = rng.uniform(0.2, 3.0, size=n) + rng.uniform(-2e-3, 2e-3, size=(2, n))
+    first, second = approached(np.array([0.5, 0.8, 0.9]), np.array([0.15, 0.3, 0.2]), gaps, rng)
+    states = tracker.start_many(*first)
+    _, answers = tracker.step_many(states, *second)
+    assert 0.5 < np.mean(answers.status == Status.FAR) < 1.0
+    for k in range(n):
+        _, one = tracker.step(states[k], second[0][k], second[1][k])
+        np.testing.assert_array_equal(answers.rows[k], one._out[:N_OUT])
