@@ -22,10 +22,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 import standoff as so
 from benchmarks import many_frames
+from benchmarks.many_frames import drawn
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.tracking.reached import cold_table
@@ -41,17 +41,6 @@ ROUNDS = 5
 BEYOND_ALL = 1e6
 """A horizon, length, that no row is beyond: it takes the general code."""
 REST = np.eye(4)[None]
-
-
-def drawn(n: int, reach: tuple[float, float]) -> Array:
-    """Random poses (n, 4, 4) at distances in a range from the origin."""
-    rng = np.random.default_rng(1)
-    poses = np.tile(np.eye(4), (n, 1, 1))
-    poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
-    way = rng.normal(size=(n, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
-    poses[:, :3, 3] = way * rng.uniform(*reach, size=(n, 1))
-    return poses
 
 
 class Rows:

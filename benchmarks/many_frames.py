@@ -7,10 +7,8 @@ to look at it is a small part of such a frame.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import partial
-from statistics import median
 from typing import Any
 
 import numpy as np
@@ -18,13 +16,13 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from benchmarks.many_poses import taken
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.tracking.threads import in_parts
 
 Array = NDArray[np.float64]
-ROUNDS = 9
 SIZES = (32, 1_000, 10_000, 100_000)
 STARTED = 1_000
 """States that are started one by one; more are copies."""
@@ -32,19 +30,6 @@ BEYOND_ALL = so.PredictorCorrector(within=1e6)
 WAY = 1e-3
 SIDE = 10
 """Bodies along each side of the world."""
-
-
-def taken(calls: Mapping[str, Callable[[], object]]) -> dict[str, float]:
-    """Seconds of each call, medians of rounds in turn."""
-    times: dict[str, list[float]] = {name: [] for name in calls}
-    for call in calls.values():
-        call()
-    for _ in range(ROUNDS):
-        for name, call in calls.items():
-            begun = time.perf_counter()
-            call()
-            times[name].append(time.perf_counter() - begun)
-    return {name: median(found) for name, found in times.items()}
 
 
 class Rows:

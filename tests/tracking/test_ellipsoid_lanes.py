@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 import standoff as so
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries import smooth
+from standoff.kernels.lanes.frames import may_lane
 from standoff.kernels.lanes.layout import ROWS
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, GENERAL_FRAMES
 from standoff.kernels.state.arrays import (
@@ -25,11 +26,13 @@ from standoff.kernels.state.arrays import (
     STATUS,
     UPPER_BOUND,
 )
+from standoff.kernels.values import Pair, Place
 from standoff.tracking import Status, reached
 from standoff.tracking.many_states import TrackerStates
 
 REST = np.eye(4)
 TOOL, PART = so.shapes.ellipsoid(0.15, 0.3, 0.2), so.shapes.ellipsoid(0.5, 0.8, 0.9)
+BOX = so.shapes.box(1.0, 0.8, 0.6)
 AXES = st.tuples(*[st.floats(0.02, 1.0)] * 3)
 
 
@@ -370,3 +373,11 @@ def test_frames_beyond_a_horizon(rng):
     for k in range(n):
         _, one = tracker.step(states[k], second[0][k], second[1][k])
         np.testing.assert_array_equal(answers.rows[k], one._out[:N_OUT])
+
+
+@pytest.mark.parametrize(("body", "chart", "fits"), [(PART, 0, True), (BOX, 0, False)])
+def test_lanes_are_for_patches_of_ellipsoids(body, chart, fits):
+    for a, b in ((body, TOOL), (TOOL, body)):
+        pair = Pair(a.ints, a.reals, b.ints, b.reals)
+        place = Place(0, chart, 0, chart, 0.1, 0.1, 0.1, 0.1)
+        assert may_lane(pair, place) is fits

@@ -8,10 +8,10 @@ from typing import Any
 
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import dimension
-from standoff.kernels.compiler.decorators import ahead, entry, kernel, small
+from standoff.kernels.compiler.decorators import entry, kernel, small
 from standoff.kernels.compiler.entry import INT, REAL
-from standoff.kernels.frame.inputs import inputs_at, refused
-from standoff.kernels.frame.record import Called, read_call
+from standoff.kernels.frame.inputs import refused
+from standoff.kernels.frame.record import called_in_block, read_call
 from standoff.kernels.frame.smooth import (
     EDGE_AND_FACE,
     FACE_AND_EDGE,
@@ -23,15 +23,10 @@ from standoff.kernels.frame.smooth import (
     smooth_frame,
 )
 from standoff.kernels.state.arrays import (
-    BLOCK_HAS_TWIST,
-    BLOCK_MOTION,
-    BLOCK_STATE,
     BLOCK_TIME_STEP,
     FINE,
 )
 from standoff.kernels.state.state import read_place
-
-NO_WORK = 0  # a smooth frame counts nothing on the way
 
 
 @small
@@ -105,10 +100,9 @@ def smooth_in_block(look_a, look_b, pair, options, block):
 
     What a thread of a GPU does (`standoff.gpu`).
     """
-    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
-    if refused(pair, inputs) != FINE:
+    call = called_in_block(pair, options, block)
+    if refused(pair, call.inputs) != FINE:
         return 0
-    call = Called(pair, inputs, options, ahead(block, BLOCK_STATE), block, NO_WORK)
     return smooth_frame(look_a, look_b, FACES, call, block[BLOCK_TIME_STEP])
 
 

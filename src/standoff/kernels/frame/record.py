@@ -3,11 +3,25 @@
 from typing import Any, NamedTuple
 
 from standoff.kernels.compiler.calls import address_of, call_frame
-from standoff.kernels.compiler.decorators import ints_at, ints_on_stack, kernel, reals_at
-from standoff.kernels.frame.inputs import N_CHANGE, Inputs
+from standoff.kernels.compiler.decorators import (
+    ahead,
+    ints_at,
+    ints_on_stack,
+    kernel,
+    reals_at,
+    small,
+)
+from standoff.kernels.frame.inputs import N_CHANGE, Inputs, inputs_at
 from standoff.kernels.pair.events import EVENT_COLUMNS, MAX_EVENTS, N_COUNT_SLOTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
-from standoff.kernels.state.arrays import N_OPTIONS, N_OUT, N_STATE
+from standoff.kernels.state.arrays import (
+    BLOCK_HAS_TWIST,
+    BLOCK_MOTION,
+    BLOCK_STATE,
+    N_OPTIONS,
+    N_OUT,
+    N_STATE,
+)
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Pair, Work
 
@@ -18,6 +32,7 @@ CALL_COUNTS, CALL_EVENTS, CALL_LAST_POLYTOPE, CALL_POLYTOPE = range(13, 17)
 N_CALL = 17
 
 N_POSE, N_TWIST = 12, 6
+NO_WORK = 0  # a smooth frame's
 
 
 class Called(NamedTuple):
@@ -29,6 +44,13 @@ class Called(NamedTuple):
     state: Any  # pointer
     out: Any  # pointer
     work: Any
+
+
+@small
+def called_in_block(pair, options, block):
+    """The arguments of a frame on a block (``entries.blocks``) that counts nothing on the way."""
+    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
+    return Called(pair, inputs, options, ahead(block, BLOCK_STATE), block, NO_WORK)
 
 
 @kernel

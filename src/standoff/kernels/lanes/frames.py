@@ -7,14 +7,13 @@ answered by itself: inside the lanes nothing exits, a phase says what has come o
 
 from math import inf
 
-from standoff.kernels.algebra.vectors import sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record, has_collapsed, moved_jet
-from standoff.kernels.compiler.decorators import ahead, ints_on_stack, kernel, small
+from standoff.kernels.compiler.decorators import ints_on_stack, kernel, small
 from standoff.kernels.frame.answer import judge
-from standoff.kernels.frame.inputs import inputs_at, moving, refused
+from standoff.kernels.frame.inputs import moving, refused
 from standoff.kernels.frame.prediction import predict
-from standoff.kernels.frame.record import Called
+from standoff.kernels.frame.record import called_in_block
 from standoff.kernels.frame.smooth import (
     FACES,
     Looked,
@@ -54,13 +53,9 @@ from standoff.kernels.lanes.frame_layout import (
     tangents_of,
 )
 from standoff.kernels.lanes.layout import ROWS, lane, put_vector, twelve_of, vector_of
-from standoff.kernels.lanes.rows import Witness, seen
-from standoff.kernels.pair.certificate import SINGLE, Cones, NormalCone
+from standoff.kernels.lanes.rows import Witness, cones_between, seen
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import (
-    BLOCK_HAS_TWIST,
-    BLOCK_MOTION,
-    BLOCK_STATE,
     BLOCK_TIME_STEP,
     FINE,
 )
@@ -73,7 +68,6 @@ LEFT, GOING, RESTS = 0.0, 1.0, 2.0
 """What a row has come to: it is left to be answered by itself, descends, or is at rest. A row that
 is none is LEFT."""
 
-NO_WORK = 0  # a smooth frame counts nothing on the way
 ANYWHERE = Place(0, 0, 0, 0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -98,17 +92,10 @@ def put_side(ints, reals, chart, side, row):
         side[lane(HEADER + k, row)] = reals[k]
 
 
-@small
-def called_on(pair, options, block):
-    """A frame on a block (``entries.blocks``)."""
-    inputs = inputs_at(ahead(block, BLOCK_MOTION), block[BLOCK_HAS_TWIST] != 0.0)
-    return Called(pair, inputs, options, ahead(block, BLOCK_STATE), block, NO_WORK)
-
-
 @kernel
 def put_row(pair, options, block, lanes, row):
     """Begin a row's frame in lanes; False where the frame of smooth faces cannot be tried."""
-    call = called_on(pair, options, block)
+    call = called_in_block(pair, options, block)
     before = read_state(call.state)
     tried = options.smooth != 0 and options.within == inf and not options.paper
     if not (tried and may_be_smooth(FACES, pair, before) and may_lane(pair, before.place)):
@@ -148,13 +135,7 @@ def looked_at(lanes, place, row):
     jet_a, n_a = seen(witness_of(lanes.a, place[0], place[1], row))
     own_b, n_b = seen(witness_of(lanes.b, place[2], place[3], row))
     jet_b = moved_jet(pose, own_b)
-    cones = Cones(
-        NormalCone(SINGLE, n_a, n_a, ORIGIN, 0.0),
-        NormalCone(SINGLE, n_b, n_b, ORIGIN, 0.0),
-        jet_a[0],
-        own_b[0],
-        sub(jet_b[0], jet_a[0]),
-    )
+    cones = cones_between(jet_a, n_a, jet_b, own_b, n_b)
     return Looked(True, (jet_a, jet_b), cones, ((ORIGIN, ORIGIN), (ORIGIN, ORIGIN))), own_b
 
 
@@ -236,7 +217,7 @@ def weigh(lanes):
 @kernel
 def write_row(pair, options, block, lanes, row):
     """Write the answer and the next state of a row that rests and is proven."""
-    call, descent, at = called_on(pair, options, block), descent_of(lanes, row), lanes.found
+    call, descent, at = called_in_block(pair, options, block), descent_of(lanes, row), lanes.found
     before = read_state(call.state)
     u, v, r, s = descent.place
     old = before.place

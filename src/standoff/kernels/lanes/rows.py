@@ -125,18 +125,24 @@ def correction(pose, a, b):
 
 
 @small
-def weighed(pair, tolerance, near, pose, a, b):
-    """The certificate at two witness points; `near` is a distance that counts as contact."""
-    radius_a, radius_b = pair.reals_a[L.RADIUS], pair.reals_b[L.RADIUS]
-    (jet_a, n_a), (own_b, n_b) = seen(a), seen(b)
-    jet_b = moved_jet(pose, own_b)
-    cones = Cones(
+def cones_between(jet_a, n_a, jet_b, own_b, n_b):
+    """What the certificate asks of two points inside faces; B's normal and own jet in its frame."""
+    return Cones(
         NormalCone(SINGLE, n_a, n_a, ORIGIN, 0.0),
         NormalCone(SINGLE, n_b, n_b, ORIGIN, 0.0),
         jet_a[0],
         own_b[0],
         sub(jet_b[0], jet_a[0]),
     )
+
+
+@small
+def weighed(pair, tolerance, near, pose, a, b):
+    """The certificate at two witness points; `near` is a distance that counts as contact."""
+    radius_a, radius_b = pair.reals_a[L.RADIUS], pair.reals_b[L.RADIUS]
+    (jet_a, n_a), (own_b, n_b) = seen(a), seen(b)
+    jet_b = moved_jet(pose, own_b)
+    cones = cones_between(jet_a, n_a, jet_b, own_b, n_b)
     place = Place(0, a.chart, 0, b.chart, a.p, a.q, b.p, b.q)
     d, lower, n, blur = certify_cones(pair, pose, place, cones, ORIGIN)
     slope = metric_norm(pair_metric(jet_a, jet_b), gradient(projection_errors(jet_a, jet_b)))
