@@ -29,7 +29,8 @@ from standoff.gpu import cold, compiler, device_arrays, threads, tracks
 from standoff.gpu.resources import Resources, compiled, resources_of
 from standoff.kernels.state import arrays as K
 from standoff.tracking.many_states import TrackerStates
-from standoff.tracking.reached import cold_table
+from standoff.tracking.reached import cold_tables
+from standoff.tracking.row_pairs import row_pairs
 from standoff_studies.kinds import nurbs_ellipsoid
 
 Array = NDArray[np.float64]
@@ -103,12 +104,12 @@ class Cold:
 
     def __init__(self, kernel: str, n: int) -> None:
         self.a, self.b = bodies_of(kernel)
-        self.poses, self.table = drawn(n, REACH), cold_table(self.a, self.b)
+        self.poses, self.tables = drawn(n, REACH), cold_tables(row_pairs(self.a, self.b))
         self.rows, self.done = np.full((n, K.N_OUT), np.nan), np.zeros(n, dtype=np.int64)
 
     def arguments(self) -> tuple[Any, ...]:
         """What a thread is given."""
-        *pair, options = self.table.arrays
+        *pair, options = self.tables.tables[0].arrays
         return tuple(pair), options, np.eye(4)[None], self.poses, self.rows, self.done
 
     def judged(self) -> dict[str, float]:
@@ -243,7 +244,7 @@ def timed(work: Callable[[], None], n: int) -> float:
 def measured_cold(kernel: str, n: int) -> dict[str, float]:
     """Rows a second of cold queries, on the GPU and with the copies, and the judgement."""
     rows = Cold(kernel, n)
-    pair, options = device_arrays.pair_and_options(rows.table.arrays)
+    pair, options = device_arrays.pair_and_options(rows.tables.tables[0].arrays)
     rest, there = device_arrays.sent(np.eye(4)[None]), device_arrays.sent(rows.poses)
     outs, done = device_arrays.empty(rows.rows.shape), device_arrays.empty((n,), np.int64)
     arguments = pair, options, rest, there, outs, done
@@ -251,7 +252,7 @@ def measured_cold(kernel: str, n: int) -> dict[str, float]:
     rows.rows[:], rows.done[:] = outs.copy_to_host(), done.copy_to_host()
     given, answers = (np.eye(4)[None], rows.poses), np.empty_like(rows.rows)
     answering = cold.Answering(kernel)
-    whole = timed(lambda: answering(rows.table, given, answers), n)
+    whole = timed(lambda: answering(rows.tables, given, answers), n)
     return {"rate": fast, "rate with copies": whole, "share": rows.done.mean(), **rows.judged()}
 
 

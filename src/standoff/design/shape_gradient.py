@@ -29,7 +29,7 @@ from standoff.tracking.derivatives import (
     flagged_gradient,
     flagged_gradients,
 )
-from standoff.tracking.many_distances import Distances
+from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.proximity import Proximity
 
 Array = NDArray[np.float64]

@@ -27,7 +27,8 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import DerivativeWarning, StandoffError, StandoffTypeError
 from standoff.tracking.cold_query import distance
 from standoff.tracking.derivatives import Smoothness
-from standoff.tracking.many_distances import Distances, answered_rows
+from standoff.tracking.distance_arrays import Distances
+from standoff.tracking.many_distances import answered_rows
 from standoff.tracking.proximity import Proximity
 
 Array = NDArray[np.float64]

@@ -14,9 +14,10 @@ from standoff.gpu.threads import ELLIPSOIDS, start_threads
 from standoff.kernels.lanes.rows import whole_ellipsoid
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
+from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.inputs import check_pair
-from standoff.tracking.many_distances import Distances, answered_rows, cold_rows
-from standoff.tracking.reached import AddressTable
+from standoff.tracking.many_distances import answered_rows, cold_rows
+from standoff.tracking.reached import AddressTables
 from standoff.wording import short_name
 
 Array = NDArray[np.float64]
@@ -34,7 +35,7 @@ class DistancesOfThreads(Distances):
     __slots__ = ("by_threads",)
 
     def __init__(self, found: Distances, by_threads: int) -> None:
-        super().__init__(found.bodies, found.rows, found.poses, found.repaired, found.errors)
+        super().__init__(found._of, found.rows, found.poses, found.repaired, found.errors)
         self.by_threads = by_threads
 
 
@@ -112,11 +113,11 @@ class Answering:
         self.kernel, self.by_threads = kernel, 0
 
     def __call__(
-        self, table: AddressTable, poses: tuple[Array, Array], rows: Array, workers: int = 1
+        self, tables: AddressTables, poses: tuple[Array, Array], rows: Array, workers: int = 1
     ) -> None:
         """Answer every row (n, N_OUT) by itself, in place; those that are not proven by a thread,
         on the processor."""
-        pair, options = pair_and_options(table.arrays)
+        pair, options = pair_and_options(tables.tables[0].arrays)
         outs, done = empty(rows.shape), empty((len(rows),), np.int64)
         arguments = pair, options, sent(poses[0]), sent(poses[1]), outs, done
         start_threads(self.kernel, len(rows), arguments)
@@ -126,5 +127,5 @@ class Answering:
         if len(left):
             there = tuple(x if len(x) == 1 else np.ascontiguousarray(x[left]) for x in poses)
             again = np.full((len(left), K.N_OUT), np.nan)
-            cold_rows(table, (there[0], there[1]), again, workers)
+            cold_rows(tables, (there[0], there[1]), again, workers)
             rows[left] = again

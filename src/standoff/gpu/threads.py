@@ -11,7 +11,7 @@ from numba import types
 from standoff.gpu.compiler import SIMULATED, cuda, launched
 from standoff.kernels.compiler.decorators import ahead, pointer, small
 from standoff.kernels.entries import smooth
-from standoff.kernels.entries.batch import Table, start_ellipsoid, start_smooth
+from standoff.kernels.entries.batch import Rows, start_ellipsoid, start_smooth
 from standoff.kernels.state.arrays import BLOCK_MOTION, BLOCK_POLYTOPE, N_BLOCK
 from standoff.kernels.state.options import read_options
 from standoff.kernels.values import Pair
@@ -34,11 +34,9 @@ def bodies_of(pair):  # type: ignore[no-untyped-def]
 
 
 @small
-def table_of(pair, options, poses_a, poses_b, outs):  # type: ignore[no-untyped-def]
-    """What all rows have in common."""
-    return Table(
-        bodies_of(pair),
-        read_options(pointer(options, 0)),
+def rows_of(poses_a, poses_b, outs):  # type: ignore[no-untyped-def]
+    """Where the rows' poses and answers are."""
+    return Rows(
         pointer(poses_a, 0),
         pointer(poses_b, 0),
         0 if len(poses_a) == 1 else 16,
@@ -55,16 +53,16 @@ def cold_ellipsoids(
     prove it. poses (n, 4, 4), or (1, 4, 4) for all rows; outs (n, N_OUT)."""
     k = cuda.grid(1)
     if k < len(outs):
-        table = table_of(pair, options, poses_a, poses_b, outs)
-        done[k] = 1 if start_ellipsoid(table, k) else 0
+        rows, law = rows_of(poses_a, poses_b, outs), read_options(pointer(options, 0))
+        done[k] = 1 if start_ellipsoid(bodies_of(pair), law, rows, k) else 0
 
 
 def _cold(look: Any) -> Callable[..., None]:
     def cold(pair: Any, options: Any, poses_a: Any, poses_b: Any, outs: Any, done: Any) -> None:
         k = cuda.grid(1)
         if k < len(outs):
-            table = table_of(pair, options, poses_a, poses_b, outs)
-            done[k] = 1 if start_smooth(look, look, table, k) else 0
+            rows, law = rows_of(poses_a, poses_b, outs), read_options(pointer(options, 0))
+            done[k] = 1 if start_smooth(look, look, bodies_of(pair), law, rows, k) else 0
 
     return cold
 

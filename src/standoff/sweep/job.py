@@ -26,7 +26,7 @@ from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.subject import Alone, Subject
 from standoff.sweep.summary import Summary
 from standoff.sweep.work import Token, Work
-from standoff.tracking.many_distances import Distances
+from standoff.tracking.distance_arrays import Distances
 
 Array = NDArray[np.float64]
 

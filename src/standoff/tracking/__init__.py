@@ -20,10 +20,11 @@ if TYPE_CHECKING:
     from standoff.tracking.contact.patches import Patch, Patches
     from standoff.tracking.contact.witness_set import WitnessSet, witness_set
     from standoff.tracking.derivatives import DerivativeArrays, Derivatives, Smoothness
+    from standoff.tracking.distance_arrays import Distances
     from standoff.tracking.feedback import max_gain
     from standoff.tracking.frame_buffer import FrameBuffer
     from standoff.tracking.laws import PaperLaw, PredictorCorrector
-    from standoff.tracking.many_distances import Distances, distances
+    from standoff.tracking.many_distances import distances
     from standoff.tracking.many_states import TrackerStates
     from standoff.tracking.pair_plot import plot
     from standoff.tracking.pair_system import PairSystem, pair_system
@@ -45,7 +46,8 @@ else:
                 "End",
             ),
             "standoff.tracking.cold_query": ("distance",),
-            "standoff.tracking.many_distances": ("Distances", "distances"),
+            "standoff.tracking.distance_arrays": ("Distances",),
+            "standoff.tracking.many_distances": ("distances",),
             "standoff.tracking.contact.patches": ("Patch", "Patches"),
             "standoff.tracking.contact.witness_set": (
                 "WitnessSet",

@@ -117,6 +117,11 @@ class Answers(AnswerArrays):
         return self._a, self._b
 
     @property
+    def parts(self) -> list[tuple[Answers, NDArray[np.int64]]]:
+        """All rows, as `Distances` has those of each pair."""
+        return [(self, np.arange(len(self)))]
+
+    @property
     def rows(self) -> Array:
         """The kernels' answers, as `Distances` has them."""
         return np.ascontiguousarray(self.blocks[:, : K.N_OUT])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple, Protocol
 
@@ -150,6 +150,9 @@ class Table(Protocol):
     @property
     def poses(self) -> tuple[Array, Array]: ...
 
+    @property
+    def parts(self) -> Sequence[tuple[Table, NDArray[np.int64]]]: ...
+
     def __getitem__(self, k: int, /) -> Answer: ...
 
 
@@ -176,6 +179,22 @@ def _derived_rows(
     table: Table, numbers: Array, workers: int
 ) -> tuple[NDArray[np.object_], dict[int, str]]:
     """Write derivatives into rows of `numbers`; say of each whether there are any, and why not."""
+    parts = table.parts
+    if len(parts) == 1:
+        return _derived_rows_of_a_pair(table, numbers, workers)
+    smoothness = np.empty(len(numbers), dtype=object)
+    reasons: dict[int, str] = {}
+    for part, at in parts:
+        own = np.empty((len(at), numbers.shape[1]))
+        smoothness[at], told = _derived_rows_of_a_pair(part, own, workers)
+        numbers[at] = own
+        reasons |= {int(at[k]): why for k, why in told.items()}
+    return smoothness, dict(sorted(reasons.items()))
+
+
+def _derived_rows_of_a_pair(
+    table: Table, numbers: Array, workers: int
+) -> tuple[NDArray[np.object_], dict[int, str]]:
     pair = packed(*table.bodies)
     kinds = np.zeros(len(numbers), dtype=np.int64)
 

@@ -2,179 +2,37 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.features import feature_of
 from standoff.checks.numbers import positive, whole_number, yes_or_no
 from standoff.errors import StandoffError
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
 from standoff.motion import PosesLike
-from standoff.tracking.answers import AnswerArrays, proven, statuses
-from standoff.tracking.inputs import check_pair
+from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.pose_arrays import PoseArray, mended, read_poses
-from standoff.tracking.proximity import Proximity
-from standoff.tracking.reached import AddressTable, cold_table
+from standoff.tracking.reached import AddressTables, cold_tables
 from standoff.tracking.refused_rows import RefusedPoses, RefusedRows
-from standoff.tracking.rows import motion_row
+from standoff.tracking.row_pairs import RowPairs, is_planar, row_pairs
 from standoff.tracking.threads import in_parts
 from standoff.tracking.tracker import Tracker
-from standoff.wording import counted, short_name
-
-if TYPE_CHECKING:
-    from standoff.tracking.derivatives import DerivativeArrays
+from standoff.wording import counted
 
 Array = NDArray[np.float64]
 
-ColdRows = Callable[[AddressTable, tuple[Array, Array], Array, int], None]
+ColdRows = Callable[[AddressTables, tuple[Array, Array], Array, int], None]
 """Answers cold rows as `cold_rows` does."""
-FEATURE = np.dtype([("kind", "U6"), ("index", np.int64)])
-"""A feature in an array: "face", "edge" or "vertex", and its number among those."""
-
-
-class Distances(AnswerArrays):
-    """Signed distances of two bodies at n pairs of poses, as arrays of n rows.
-
-    ``found[k]`` is row k as a `Proximity`. A row whose poses are invalid is nan in all arrays, and
-    ``errors`` says why.
-
-    Attributes
-    ----------
-    distance, lower_bound, upper_bound : (n,) arrays
-    point_a, point_b, normal : (n, 3) arrays
-        As in `Proximity`, in world axes.
-    repaired : (n,) array of int
-        How many of a row's two poses had a rounded rotation and were replaced by the nearest.
-    errors : mapping of int to StandoffError
-        Of the rows that were refused; each error is made when it is asked for.
-    poses : pair of (n, 4, 4) arrays
-        World poses of A and B for which the rows hold, nan where they are invalid; (1, 4, 4) where
-        one was given for all.
-    """
-
-    __slots__ = ("_a", "_b", "errors", "poses", "repaired", "rows")
-
-    def __init__(
-        self,
-        bodies: tuple[Body, Body],
-        rows: Array,
-        poses: tuple[Array, Array],
-        repaired: NDArray[np.int64],
-        errors: RefusedRows,
-    ) -> None:
-        self._a, self._b = bodies
-        self.rows, self.poses, self.repaired, self.errors = rows, poses, repaired, errors
-        for array in (rows, repaired, *poses):
-            array.flags.writeable = False
-
-    @property
-    def _numbers(self) -> Array:
-        return self.rows
-
-    @property
-    def bodies(self) -> tuple[Body, Body]:
-        """(A, B)."""
-        return self._a, self._b
-
-    @property
-    def status(self) -> NDArray[np.object_]:
-        """(n,) the status of each row, REFUSED where a pose is invalid."""
-        return statuses(self.rows[:, K.STATUS])
-
-    @property
-    def certified(self) -> NDArray[np.bool_]:
-        """(n,) is the answer proven?"""
-        return proven(self.rows[:, K.STATUS])
-
-    @property
-    def feature_a(self) -> NDArray[np.void]:
-        """(n,) A's active feature, an array with the fields ``kind`` and ``index``."""
-        return _features(self._a, self.rows[:, K.OUT_MODE])
-
-    @property
-    def feature_b(self) -> NDArray[np.void]:
-        """(n,) B's."""
-        return _features(self._b, self.rows[:, K.OUT_MODE + 2])
-
-    def derivatives(self, *, workers: int = 1) -> DerivativeArrays:
-        """All derivatives of all rows by the poses, with flags (docs/derivatives.md).
-
-        Parameters
-        ----------
-        workers : int
-            Threads that share the rows; the numbers are the same for any number.
-        """
-        from standoff.tracking.derivatives import derivative_arrays
-
-        return derivative_arrays(self, whole_number(workers, "workers"))
-
-    @property
-    def gradient(self) -> Array:
-        """(n, 12) derivatives of the distance by unit twists (v_A, omega_A, v_B, omega_B).
-
-        nan where there is none, in flat contact only for some turns; computed at each call, like
-        those below.
-        """
-        from standoff.tracking.derivatives import gradients
-
-        return gradients(self)
-
-    @property
-    def hessian(self) -> Array:
-        """(n, 12, 12) of the distance."""
-        return self.derivatives().hessian
-
-    @property
-    def normal_jacobian(self) -> Array:
-        """(n, 3, 12) of the normal."""
-        return self.derivatives().normal_jacobian
-
-    @property
-    def point_jacobians(self) -> tuple[Array, Array]:
-        """Two (n, 3, 12), of the witness points on A and on B."""
-        return self.derivatives().point_jacobians
-
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    def __getitem__(self, k: int) -> Proximity:
-        index = range(len(self))[operator.index(k)]
-        if index in self.errors:
-            raise self.errors[index]
-        block = np.zeros(K.N_BLOCK)
-        block[: K.N_OUT] = self.rows[index]
-        block[K.BLOCK_MOTION : K.BLOCK_TIME_STEP] = motion_row(
-            *(_flat(_row(poses, index)) for poses in self.poses)
-        )
-        return Proximity(self._a, self._b, block, int(self.repaired[index]))
-
-    def __repr__(self) -> str:
-        names = " and ".join(short_name(body.name) for body in (self._a, self._b))
-        refused = f", {len(self.errors)} refused" if self.errors else ""
-        return f"<Distances at {counted(len(self), 'pair')} of poses: {names}{refused}>"
-
-
-def _features(body: Body, numbers: Array) -> NDArray[np.void]:
-    """Features by the kernels' numbers; an empty kind and -1 where a row was refused or is FAR."""
-    found = np.zeros(len(numbers), dtype=FEATURE)
-    found["index"] = -1
-    for number in np.unique(numbers[numbers >= 0.0]).astype(int).tolist():
-        feature = feature_of(body, number)
-        here = numbers == number
-        found["kind"][here], found["index"][here] = feature.kind, feature.index
-    return found
 
 
 def distances(
-    a: Body,
-    b: Body,
+    a: Body | Sequence[Body],
+    b: Body | Sequence[Body],
     poses_a: PosesLike,
     poses_b: PosesLike,
     *,
@@ -182,19 +40,21 @@ def distances(
     workers: int = 1,
     within: float | None = None,
 ) -> Distances:
-    """The signed minimum distances of two bodies at n pairs of poses.
+    """The signed minimum distances of two bodies, or of n pairs of bodies, at n pairs of poses.
 
     Parameters
     ----------
-    a, b : Body
-        Two spatial bodies, or two planar ones.
+    a, b : Body, or list of n bodies
+        All spatial, or all planar. A list has one body for each row; the same body may stand in it
+        many times.
     poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), and others, or one pose for all rows
         World poses; rows of 12 are R row-major, p. Also a pair (R, p) of stacks (n, 3, 3) and (n,
         3), a list of poses, SciPy's ``RigidTransform`` of n, and `Poses`, for quaternions:
         ``so.Poses.from_xyzw(q, p)`` or ``from_wxyz``.
     warm : bool
         False: every row is a cold query by itself, as ``so.distance``. True: each starts from the
-        row before, as in ``Tracker.run``: several times as fast if the rows follow a motion.
+        row before, of lists from the last row of the same two bodies, as in ``Tracker.run``:
+        several times as fast if the rows follow a motion.
     workers : int
         Threads that share cold rows. The answers are the same, to the last bit, for any number.
     within : float, optional
@@ -215,8 +75,8 @@ def distances(
     TypeError
         Not a body.
     ValueError
-        Arrays of another shape, or of different lengths; a number of workers that is not positive;
-        a planar body with a spatial one; two half-spaces.
+        Arrays of another shape, or of different lengths; lists of bodies of another length; a
+        number of workers that is not positive; a planar body with a spatial one; two half-spaces.
     """
     found = answered_rows(a, b, poses_a, poses_b, warm=warm, workers=workers, within=within)
     if found.errors:
@@ -225,8 +85,8 @@ def distances(
 
 
 def answered_rows(
-    a: Body,
-    b: Body,
+    a: Body | Sequence[Body],
+    b: Body | Sequence[Body],
     poses_a: Any,
     poses_b: Any,
     *,
@@ -237,34 +97,44 @@ def answered_rows(
 ) -> Distances:
     """`distances`, without a warning. `cold` is what answers cold rows, if not the processor."""
     whole_number(workers, "workers")
-    check_pair(a, b)
+    of = row_pairs(a, b)
     horizon = None if within is None else positive(within, "within")
-    tracker = _tracker(a, b, horizon) if yes_or_no(warm, "warm") else None
-    planar = a.dimension == 2 or b.dimension == 2
+    yes_or_no(warm, "warm")
     given_a, given_b = read_poses(poses_a, "poses_a"), read_poses(poses_b, "poses_b")
-    counts = len(given_a.matrices), len(given_b.matrices)
-    n = max(counts)
-    if {*counts} - {1, n}:
-        raise StandoffError(
-            f"poses_a has {counted(counts[0], 'pose')} and poses_b {counts[1]}: give n of both, or "
-            "one for all rows.",
-            "poses_a",
-        )
+    n = _count(of, len(given_a.matrices), len(given_b.matrices))
     (of_a, marks_a, refused_a), (of_b, marks_b, refused_b) = (
-        _checked(given, name, planar)
+        _checked(given, name, of.planar)
         for given, name in ((given_a, "poses_a"), (given_b, "poses_b"))
     )
     refused = np.zeros(n, dtype=bool)
     for poses in (refused_a, refused_b):
         refused[slice(None) if poses.given == 1 and len(poses.rows) else poses.rows] = True
     rows = np.full((n, K.N_OUT), np.nan)
-    if tracker is None:
-        (cold or cold_rows)(cold_table(a, b, horizon), (of_a, of_b), rows, workers)
+    if warm:
+        _warm(of, horizon, (of_a, of_b), rows, refused)
     else:
-        _warm(tracker, (of_a, of_b), rows, refused)
-    errors = RefusedRows(refused, refused_a, refused_b, planar)
+        (cold or cold_rows)(cold_tables(of, horizon), (of_a, of_b), rows, workers)
+    errors = RefusedRows(refused, refused_a, refused_b, of.planar)
     repaired = np.broadcast_to(marks_a, n) + np.broadcast_to(marks_b, n)
-    return Distances((a, b), rows, (of_a, of_b), repaired, errors)
+    return Distances(of, rows, (of_a, of_b), repaired, errors)
+
+
+def _count(of: RowPairs, poses_a: int, poses_b: int) -> int:
+    """How many rows there are."""
+    n = max(poses_a, poses_b, len(of.which))
+    if {poses_a, poses_b} - {1, n}:
+        raise StandoffError(
+            f"poses_a has {counted(poses_a, 'pose')} and poses_b {poses_b}: give "
+            f"{'n' if len(of.which) < n else n} of both, or one for all rows.",
+            "poses_a",
+        )
+    if len(of.which) not in (1, n):
+        raise StandoffError(
+            f"There are {counted(len(of.which), 'pair')} of bodies and {n} of poses: give one body "
+            "for each row, or one for all.",
+            "a",
+        )
+    return n
 
 
 def rows_at_made_poses(a: Body, b: Body, poses: tuple[Array, Array], within: float | None) -> Array:
@@ -279,7 +149,7 @@ def rows_at_made_poses(a: Body, b: Body, poses: tuple[Array, Array], within: flo
     within : float or None
     """
     rows = np.full((max(map(len, poses)), K.N_OUT), np.nan)
-    cold_rows(cold_table(a, b, within), poses, rows)
+    cold_rows(cold_tables(row_pairs(a, b), within), poses, rows)
     return rows
 
 
@@ -292,7 +162,7 @@ def fit_poses(a: Body, b: Body, poses: tuple[Array, Array]) -> tuple[Array, Arra
     a, b : Body
     poses : two (n, 4, 4) arrays, or (1, 4, 4)
     """
-    planar = a.dimension == 2 or b.dimension == 2
+    planar = is_planar((a, b))
     of_a, of_b = (
         _checked(read_poses(given, name), name, planar)[0]
         for given, name in zip(poses, ("poses_a", "poses_b"), strict=True)
@@ -311,11 +181,6 @@ def _row(poses: Array, k: int) -> Array:
     return row
 
 
-def _flat(pose: Array) -> Array:
-    """(12,) R row-major, p."""
-    return np.concatenate([pose[:3, :3].ravel(), pose[:3, 3]])
-
-
 def _checked(
     given: PoseArray, name: str, planar: bool
 ) -> tuple[Array, NDArray[np.int64], RefusedPoses]:
@@ -329,21 +194,39 @@ def _checked(
 
 
 def cold_rows(
-    table: AddressTable, poses: tuple[Array, Array], rows: Array, workers: int = 1
+    tables: AddressTables, poses: tuple[Array, Array], rows: Array, workers: int = 1
 ) -> None:
     """Answer every row by itself."""
     done = np.zeros(len(rows), dtype=np.int64)
 
     def part(first: int, end: int) -> None:
-        batch.starts(table.address, *poses, first, end, rows, done)
+        batch.starts(tables.address, tables.which, *poses, first, end, rows, done)
 
     in_parts(part, len(rows), workers)
 
 
 def _warm(
+    of: RowPairs,
+    within: float | None,
+    poses: tuple[Array, Array],
+    rows: Array,
+    refused: NDArray[np.bool_],
+) -> None:
+    """Answer each row from the one before, of the same bodies; the first, and one behind a refused
+    row, cold."""
+    if not of.several:
+        _follow(_tracker(*of.pairs[0], within), poses, rows, refused)
+        return
+    for j, at in of.groups():
+        own = np.full((len(at), K.N_OUT), np.nan)
+        there = tuple(x if len(x) == 1 else x[at] for x in poses)
+        _follow(_tracker(*of.pairs[j], within), (there[0], there[1]), own, refused[at])
+        rows[at] = own
+
+
+def _follow(
     tracker: Tracker, poses: tuple[Array, Array], rows: Array, refused: NDArray[np.bool_]
 ) -> None:
-    """Answer each row from the one before; the first, and one behind a refused row, cold."""
     good = np.flatnonzero(~refused)
     for stretch in np.split(good, np.flatnonzero(np.diff(good) > 1) + 1) if len(good) else ():
         first, end = int(stretch[0]), int(stretch[-1]) + 1

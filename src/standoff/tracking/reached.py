@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -15,6 +16,7 @@ from standoff.tracking.inputs import check_pair
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, PredictorCorrector
 from standoff.tracking.options import resolved_options, with_frames
+from standoff.tracking.row_pairs import RowPairs
 from standoff.tracking.specialised import address_of, smooth_frame_of
 
 Array = NDArray[np.float64]
@@ -46,17 +48,40 @@ class AddressTable:
     ----------
     arrays : tuple of arrays
         As given.
+    numbers : (k, 2) array of int
+        The table: addresses and lengths.
     address : int
         Of the table.
     """
 
-    __slots__ = ("_table", "address", "arrays")
+    __slots__ = ("address", "arrays", "numbers")
 
     def __init__(self, arrays: tuple[NDArray[Any], ...]) -> None:
         self.arrays = arrays
         rows = [(x.ctypes.data, len(x)) for x in arrays]
-        self._table = np.array(rows, dtype=np.int64)
-        self.address: int = self._table.ctypes.data
+        self.numbers = np.array(rows, dtype=np.int64)
+        self.address: int = self.numbers.ctypes.data
+
+
+class AddressTables:
+    """The tables of rows that need not be of the same two bodies; it keeps them alive.
+
+    Attributes
+    ----------
+    tables : sequence of AddressTable
+        One of each pair.
+    which : (n,) array of int, or (1,) for all rows
+        The number of each row's.
+    address : int
+        Of all tables, one behind the other.
+    """
+
+    __slots__ = ("_numbers", "address", "tables", "which")
+
+    def __init__(self, tables: Sequence[AddressTable], which: NDArray[np.int64]) -> None:
+        self.tables, self.which = tuple(tables), which
+        self._numbers = np.stack([table.numbers for table in tables])
+        self.address: int = self._numbers.ctypes.data
 
 
 class Reached:
@@ -127,3 +152,8 @@ def cold_table(a: Body, b: Body, within: float | None = None) -> AddressTable:
     check_pair(a, b)
     law = DEFAULT_LAW if within is None else PredictorCorrector(within=within)
     return table_of(a, b, resolved_options(law, ANY_TIME)[1])
+
+
+def cold_tables(of: RowPairs, within: float | None = None) -> AddressTables:
+    """`cold_table` of each pair of some rows, which are checked to be pairs."""
+    return AddressTables([cold_table(a, b, within) for a, b in of.pairs], of.which)

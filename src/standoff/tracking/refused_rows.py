@@ -71,20 +71,34 @@ class RefusedRows(Mapping[int, StandoffError], KeepsReadOnly):
     of_a, of_b : RefusedPoses
     planar : bool
         Must the poses stay in z = 0?
+    numbers : (n,) array of int, optional
+        The rows as they were given, where these are some of them.
     """
 
-    __slots__ = ("_of", "_planar", "_refused")
+    __slots__ = ("_numbers", "_of", "_planar", "_refused")
 
     def __init__(
-        self, refused: NDArray[np.bool_], of_a: RefusedPoses, of_b: RefusedPoses, planar: bool
+        self,
+        refused: NDArray[np.bool_],
+        of_a: RefusedPoses,
+        of_b: RefusedPoses,
+        planar: bool,
+        numbers: NDArray[np.int64] | None = None,
     ) -> None:
         self._refused, self._of, self._planar = refused, (of_a, of_b), planar
+        self._numbers = numbers
+
+    def at(self, rows: NDArray[np.int64]) -> RefusedRows:
+        """Those of some rows, by their places among these; what they say has the given numbers."""
+        numbers = rows if self._numbers is None else self._numbers[rows]
+        return RefusedRows(self._refused[rows], *self._of, self._planar, numbers)
 
     def __getitem__(self, row: int) -> StandoffError:
         if row not in self:
             raise KeyError(row)
+        number = operator.index(row) if self._numbers is None else int(self._numbers[row])
         for poses in self._of:
-            error = poses.error(operator.index(row), self._planar)
+            error = poses.error(number, self._planar)
             if error is not None:
                 return error
         raise KeyError(row)

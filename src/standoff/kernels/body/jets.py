@@ -250,7 +250,12 @@ def chart_parameters(reals, o, x):
     """(u, v, depth) of a point of a gnomonic chart's surface; depth > 0 where the chart sees it."""
     m = o + AFFINE
     shift = (reals[m + 9], reals[m + 10], reals[m + 11])
-    y = linear_map(reals, o + 12, (x[0] - shift[0], x[1] - shift[1], x[2] - shift[2]))
+    return gnomonic(linear_map(reals, o + 12, (x[0] - shift[0], x[1] - shift[1], x[2] - shift[2])))
+
+
+@small
+def gnomonic(y):
+    """(u, v, depth) of a point of the unit sphere, in the chart's own axes."""
     if y[2] <= 0.0:
         return 0.0, 0.0, y[2]
     return y[0] / y[2], y[1] / y[2], y[2]

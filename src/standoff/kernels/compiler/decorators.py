@@ -42,6 +42,11 @@ def uncontracted(function):
     return _part(function, fastmath=False)
 
 
+def small_uncontracted(function):
+    """`small` and `uncontracted`: the same numbers to the last bit, however it is compiled."""
+    return _part(function, fastmath=False, forceinline=not BOUNDS_CHECK)
+
+
 def small(function):
     """Compile a kernel and inline it wherever it is called."""
     # Inlining is for speed alone; checked code would grow out of proportion by it.

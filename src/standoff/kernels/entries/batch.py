@@ -18,15 +18,16 @@ from standoff.kernels.compiler.decorators import (
     stack_counts,
     stack_log,
 )
-from standoff.kernels.compiler.entry import INT, READ_BLOCKS, ROWS, WRITE_INTS
+from standoff.kernels.compiler.entry import INT, INTS, READ_BLOCKS, ROWS, WRITE_INTS
 from standoff.kernels.entries.blocks import N_TABLE, copy_pose, tabled_options, tabled_pair
 from standoff.kernels.entries.frames import clear_counts, start_frame
 from standoff.kernels.frame.inputs import inputs_at, refused
 from standoff.kernels.frame.restart import anywhere
 from standoff.kernels.frame.smooth_start import smooth_start
-from standoff.kernels.lanes.ellipsoids import N_ANSWER, query_block
-from standoff.kernels.lanes.layout import N_POSE, lane, put_pose
+from standoff.kernels.lanes.cold_layout import block_on_stack
+from standoff.kernels.lanes.ellipsoids import query_block
 from standoff.kernels.lanes.layout import ROWS as LANE_ROWS
+from standoff.kernels.lanes.layout import lane, put_pose
 from standoff.kernels.lanes.rows import TRIED, query_row, whole_ellipsoid
 from standoff.kernels.pair.events import CORRECTIONS, EVALUATIONS, N_COUNTS
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
@@ -72,11 +73,9 @@ def start_at(pair, options, pose_a, pose_b, out):
     return start_frame(anywhere, pair, inputs, options, state, START_ANYWHERE, out, work)
 
 
-class Table(NamedTuple):
-    """What all rows of a batch have in common, as pointers to rows of poses (4, 4) and answers."""
+class Rows(NamedTuple):
+    """Rows of poses (4, 4) and of answers, as pointers."""
 
-    pair: Any
-    options: Any
     poses_a: Any
     poses_b: Any
     stride_a: int  # 0 where one pose is given for all rows
@@ -85,32 +84,55 @@ class Table(NamedTuple):
     done: Any  # array
 
 
-@kernel
-def start_row(table, k):
-    """Answer a row by itself."""
-    pose_a = ahead(table.poses_a, table.stride_a * k)
-    pose_b = ahead(table.poses_b, table.stride_b * k)
-    out = ahead(table.outs, N_OUT * k)
-    table.done[k] = start_at(table.pair, table.options, pose_a, pose_b, out)
+class Pairs(NamedTuple):
+    """Which bodies each row is of, as pointers."""
+
+    tables: Any  # integers: tables of addresses, one behind the other
+    which: Any  # integers: the number of each row's table
+    stride: int  # 0 where one is given for all rows
+
+
+class Batch(NamedTuple):
+    """All that is given."""
+
+    pairs: Pairs
+    rows: Rows
 
 
 @kernel
-def place_rows(table, first, end, poses, poses_a):
-    """Put a block's poses into lanes: B's in A's frame, and A's. The last row stands for those
-    that lack."""
-    motion = reals_on_stack(N_MOTION)
-    for row in range(LANE_ROWS):
-        copy_poses(table, min(first + row, end - 1), motion)
-        pose, pose_a = placed(motion)
-        put_pose(pose, poses, row)
-        put_pose(pose_a, poses_a, row)
+def table_of(batch, k):
+    """The table of a row."""
+    pairs = batch.pairs
+    return ahead(pairs.tables, N_TABLE * pairs.which[pairs.stride * k])
+
+
+@kernel
+def pair_at(batch, k):
+    """The bodies of a row."""
+    return tabled_pair(table_of(batch, k))
 
 
 @small
-def copy_poses(table, k, motion):
+def poses_of(rows, k):
+    """Where a row's poses are."""
+    return ahead(rows.poses_a, rows.stride_a * k), ahead(rows.poses_b, rows.stride_b * k)
+
+
+@kernel
+def start_row(batch, k):
+    """Answer a row by itself."""
+    rows, table = batch.rows, table_of(batch, k)
+    pose_a, pose_b = poses_of(rows, k)
+    out = ahead(rows.outs, N_OUT * k)
+    rows.done[k] = start_at(tabled_pair(table), tabled_options(table), pose_a, pose_b, out)
+
+
+@small
+def copy_poses(rows, k, motion):
     """Copy a row's poses as 12 numbers each. Are their last rows 0 0 0 1?"""
-    square = copy_pose(ahead(table.poses_a, table.stride_a * k), ahead(motion, POSE_A))
-    return copy_pose(ahead(table.poses_b, table.stride_b * k), ahead(motion, POSE_B)) and square
+    pose_a, pose_b = poses_of(rows, k)
+    square = copy_pose(pose_a, ahead(motion, POSE_A))
+    return copy_pose(pose_b, ahead(motion, POSE_B)) and square
 
 
 @small
@@ -121,11 +143,16 @@ def placed(motion):
 
 
 @kernel
-def are_poses(table, k):
-    """Would a row by itself be refused?"""
-    motion = reals_on_stack(N_MOTION)
-    square = copy_poses(table, k, motion)
+def read_places(rows, k, motion):
+    """Copy a row's poses. Are they poses, or would a row by itself be refused?"""
+    square = copy_poses(rows, k, motion)
     return square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))
+
+
+@small
+def goal_of(options):
+    """How narrow the gap of a proof must be, in spans."""
+    return min(options.tolerance, START_GAP)
 
 
 @kernel
@@ -148,80 +175,118 @@ def complete_row(tried, out):
 
 
 @kernel
-def start_ellipsoids(table, first, end):
-    """Answer rows in lanes, block by block; those that are not proven there, by themselves."""
-    poses, poses_a = reals_on_stack(N_POSE), reals_on_stack(N_POSE)
-    answers, good = reals_on_stack(N_ANSWER), ints_on_stack(LANE_ROWS)
-    goal = min(table.options.tolerance, START_GAP)
-    for begin in range(first, end, LANE_ROWS):
-        place_rows(table, begin, end, poses, poses_a)
-        query_block(table.pair, goal, poses, poses_a, answers, good)
-        for row in range(min(LANE_ROWS, end - begin)):
-            k = begin + row
-            if good[row] == 1 and are_poses(table, k):
-                write_row(answers, row, ahead(table.outs, N_OUT * k))
-                table.done[k] = FINE
-            else:
-                start_row(table, k)
+def may_lane(batch, k):
+    """Is a row of two ellipsoids? With a horizon the boxes come first."""
+    table = table_of(batch, k)
+    pair, options = tabled_pair(table), tabled_options(table)
+    whole = whole_ellipsoid(pair.ints_a) and whole_ellipsoid(pair.ints_b)
+    return whole and options.within == inf
 
 
 @kernel
-def start_ellipsoid(table, k):
+def put_row(batch, k, lanes, row):
+    """Put a row into lanes; False where it would be refused."""
+    motion = reals_on_stack(N_MOTION)
+    if not read_places(batch.rows, k, motion):
+        return False
+    pose, pose_a = placed(motion)
+    put_pose(pose, lanes.poses, row)
+    put_pose(pose_a, lanes.poses_a, row)
+    lanes.goals[row] = goal_of(tabled_options(table_of(batch, k)))
+    return True
+
+
+@kernel
+def are_alike(batch, which):
+    """Are all rows of a block of the same two bodies?"""
+    others, pairs = 0, batch.pairs
+    first = pairs.which[pairs.stride * which[0]]
+    for row in range(LANE_ROWS):
+        others += 0 if pairs.which[pairs.stride * which[row]] == first else 1
+    return others == 0
+
+
+@kernel
+def finish_block(batch, which, n, lanes):
+    """Answer the n rows of a block; those that are not proven there, by themselves."""
+    if n == 0:
+        return
+    for row in range(n, LANE_ROWS):  # the last row stands for those that lack
+        which[row] = which[n - 1]
+        put_row(batch, which[row], lanes, row)
+    query_block(pair_at, batch, which, are_alike(batch, which), lanes)
+    for row in range(n):
+        k = which[row]
+        if lanes.good[row] == 1:
+            write_row(lanes.answers, row, ahead(batch.rows.outs, N_OUT * k))
+            batch.rows.done[k] = FINE
+        else:
+            start_row(batch, k)
+
+
+@kernel
+def start_rows(batch, first, end):
+    """Answer rows, those of ellipsoids in lanes; no row's numbers depend on its neighbours."""
+    lanes, which, n = block_on_stack(), ints_on_stack(LANE_ROWS), 0
+    last, fits = -1, False
+    for k in range(first, end):
+        number = batch.pairs.which[batch.pairs.stride * k]
+        if number != last:
+            last, fits = number, may_lane(batch, k)
+        if fits and put_row(batch, k, lanes, n):
+            which[n] = k
+            n += 1
+        else:
+            start_row(batch, k)
+        if n == LANE_ROWS:
+            finish_block(batch, which, n, lanes)
+            n = 0
+    finish_block(batch, which, n, lanes)
+
+
+@kernel
+def start_ellipsoid(pair, options, rows, k):
     """Answer a row by itself as the lanes do; True, or False where it is not proven so.
 
     What a thread of a GPU does (`standoff.gpu`).
     """
-    motion, out = reals_on_stack(N_MOTION), ahead(table.outs, N_OUT * k)
-    square = copy_poses(table, k, motion)
-    if not (square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))):
+    motion, out = reals_on_stack(N_MOTION), ahead(rows.outs, N_OUT * k)
+    if not read_places(rows, k, motion):
         return False
     pose, pose_a = placed(motion)
-    goal = min(table.options.tolerance, START_GAP)
-    good = query_row(table.pair, goal, pose, pose_a, out)
+    good = query_row(pair, goal_of(options), pose, pose_a, out)
     complete_row(out[TRIED], out)
     return good
 
 
 @kernel
-def start_smooth(look_a, look_b, table, k):
+def start_smooth(look_a, look_b, pair, options, rows, k):
     """Answer a row of two bodies whose faces are of known kinds by itself; True, or False with
     nothing written where a smooth start does not prove it.
 
     What a thread of a GPU does (`standoff.gpu`).
     """
     motion = reals_on_stack(N_MOTION)
-    square = copy_poses(table, k, motion)
-    if not (square and is_pose(ahead(motion, POSE_A)) and is_pose(ahead(motion, POSE_B))):
+    if not read_places(rows, k, motion):
         return False
-    goal = min(table.options.tolerance, START_GAP)
-    out = ahead(table.outs, N_OUT * k)
-    return smooth_start(look_a, look_b, table.pair, inputs_at(motion, False), goal, out)
+    out = ahead(rows.outs, N_OUT * k)
+    return smooth_start(look_a, look_b, pair, inputs_at(motion, False), goal_of(options), out)
 
 
-@entry(INT, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")
-def starts(table, poses_a, poses_b, first, end, outs, done):
+@entry(INT, INTS, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")
+def starts(tables, which, poses_a, poses_b, first, end, outs, done):
     """`start` at rows `first` to `end` - 1 of poses (n, 4, 4), or (1, 4, 4) for all rows.
 
-    Row k is answered into row k of outs (n, N_OUT); done[k] is FINE, or what of it is refused.
+    `tables` is the address of tables of bodies and options, one behind the other; which (n,), or
+    (1,) for all rows, are their numbers. Row k is answered into row k of outs (n, N_OUT); done[k]
+    is FINE, or what of it is refused.
     """
-    tabled = ints_at(table, N_TABLE)
-    pair, options = tabled_pair(tabled), tabled_options(tabled)
     at_a, at_b = poses_a.reshape(poses_a.size), poses_b.reshape(poses_b.size)
-    rows = outs.reshape(outs.size)
+    numbers = outs.reshape(outs.size)
     stride_a, stride_b = 0 if len(poses_a) == 1 else 16, 0 if len(poses_b) == 1 else 16
-    given = Table(
-        pair,
-        options,
-        pointer(at_a, 0),
-        pointer(at_b, 0),
-        stride_a,
-        stride_b,
-        pointer(rows, 0),
-        done,
+    rows = Rows(pointer(at_a, 0), pointer(at_b, 0), stride_a, stride_b, pointer(numbers, 0), done)
+    last = which.max()  # of an empty array there are no rows
+    pairs = Pairs(
+        ints_at(tables, N_TABLE * (last + 1)), pointer(which, 0), 0 if len(which) == 1 else 1
     )
-    # with a horizon the boxes come first
-    if options.within == inf and whole_ellipsoid(pair.ints_a) and whole_ellipsoid(pair.ints_b):
-        start_ellipsoids(given, first, end)
-    else:
-        for k in range(first, end):
-            start_row(given, k)
+    start_rows(Batch(pairs, rows), first, end)

@@ -1,94 +1,77 @@
-"""Cold queries of two ellipsoids, a block of rows at a time: `rows`, for all of a block."""
-
-from typing import Any, NamedTuple
+"""Cold queries of two ellipsoids, a block of rows at a time: `rows`, for all of a block, each row
+with bodies of its own."""
 
 from standoff.kernels.algebra.vectors import add, rotate, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record
-from standoff.kernels.compiler.decorators import ints_on_stack, kernel, reals_on_stack, small
+from standoff.kernels.body.jets import gnomonic
+from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.depth.penetration import contact_scale
-from standoff.kernels.lanes.layout import (
-    N_POSE,
-    N_VECTOR,
-    ROWS,
-    lane,
-    pose_of,
-    put_vector,
-    twelve_of,
-    vector_of,
+from standoff.kernels.lanes.cold_layout import (
+    COUNT,
+    MAP,
+    OUTWARD,
+    SEEN,
+    P,
+    Q,
+    body_of,
+    pair_of,
+    put_body,
+    put_turn,
+    turn_of,
 )
+from standoff.kernels.lanes.layout import ROWS, lane, pose_of, put_vector, twelve_at, vector_of
 from standoff.kernels.lanes.rows import (
+    NONE_SEES,
     TRIED,
     Best,
     Witness,
-    better_of,
     correction,
+    deeper_of,
+    deepest,
     map_of,
     put_answer,
+    seen_by,
     weighed,
 )
-from standoff.kernels.lanes.support import (
-    Turn,
-    ahead,
-    begun,
-    ellipsoid_of,
-    farthest,
-    is_settled,
-    turned,
-)
+from standoff.kernels.lanes.support import ahead, begun, ellipsoid_of, farthest, is_settled, turned
 from standoff.kernels.tolerances import LANE_TURNS, POLISHED
 
-# A side's lanes: parameters, how deep its chart sees the point; then the chart's affine map is
-# 12 lanes of their own.
-P, Q, DEPTH, OUTWARD = range(4)
-N_SIDE = 4 * ROWS
-# Newton's method for the normal: the normal, the step from there, the value, the share,
-# the count.
-STEP, VALUE, SHARE, COUNT = 3, 6, 7, 8
-N_TURN = 9 * ROWS
-N_ANSWER = (TRIED + 1) * ROWS  # an answer's lanes
 
-
-class Side(NamedTuple):
-    """The lanes of one body's witness points, as pointers."""
-
-    chart: Any  # numbers
-    at: Any  # N_SIDE
-    affine: Any  # N_POSE: of the charts
+@small
+def put_bodies(pair_at, given, which, alike, block):
+    """Put what a query reads of the bodies into lanes."""
+    if alike:
+        pair = pair_at(given, which[0])
+        a = ellipsoid_of(map_of(pair.ints_a, pair.reals_a, 0))
+        b = ellipsoid_of(map_of(pair.ints_b, pair.reals_b, 0))
+        for row in range(ROWS):
+            put_body(a, pair.reals_a, block.a, row)
+            put_body(b, pair.reals_b, block.b, row)
+        return
+    for row in range(ROWS):
+        pair = pair_at(given, which[row])
+        a = ellipsoid_of(map_of(pair.ints_a, pair.reals_a, 0))
+        b = ellipsoid_of(map_of(pair.ints_b, pair.reals_b, 0))
+        put_body(a, pair.reals_a, block.a, row)
+        put_body(b, pair.reals_b, block.b, row)
 
 
 @small
-def put_turn(turn, turns, row):
-    put_vector(turn.normal, turns, 0, row)
-    put_vector(turn.step, turns, STEP, row)
-    turns[lane(VALUE, row)], turns[lane(SHARE, row)] = turn.value, turn.share
-    turns[lane(COUNT, row)] = turn.count
-
-
-@small
-def turn_of(turns, row):
-    return Turn(
-        vector_of(turns, 0, row),
-        turns[lane(VALUE, row)],
-        vector_of(turns, STEP, row),
-        turns[lane(SHARE, row)],
-        turns[lane(COUNT, row)],
-    )
-
-
-@small
-def towards(a, b, poses, turns):
+def towards(block):
     """Begin with the directions from centre to centre."""
     for row in range(ROWS):
-        pose = pose_of(poses, row)
-        put_turn(begun(sub(add(rotate(pose.R, b.centre), pose.p), a.centre)), turns, row)
+        pose, a, b = pose_of(block.poses, row), body_of(block.a, row), body_of(block.b, row)
+        way = sub(add(rotate(pose.R, b.centre), pose.p), a.centre)
+        put_turn(begun(way), block.turns, row)
 
 
 @small
-def turn(a, b, poses, turns):
+def turn(block):
     """A step of every row."""
     for row in range(ROWS):
-        put_turn(turned(a, b, pose_of(poses, row), turn_of(turns, row)), turns, row)
+        pose, a, b = pose_of(block.poses, row), body_of(block.a, row), body_of(block.b, row)
+        put_turn(turned(a, b, pose, turn_of(block.turns, row)), block.turns, row)
 
 
 @small
@@ -100,49 +83,83 @@ def all_settled(turns):
 
 
 @small
-def find_normals(a, b, poses, turns):
+def find_normals(block):
     """Turn until the next step is the last, or there were too many."""
-    towards(a, b, poses, turns)
+    towards(block)
     for _ in range(LANE_TURNS):
-        turn(a, b, poses, turns)
-        if all_settled(turns):
+        turn(block)
+        if all_settled(block.turns):
             break
 
 
 @small
-def find_points(a, b, poses, turns, points_a, points_b):
+def find_points(block):
     """The farthest points of both along the normals tried last, each in its body's frame."""
     for row in range(ROWS):
-        at = farthest(a, b, pose_of(poses, row), ahead(turn_of(turns, row)))
-        put_vector(at.x_a, points_a, 0, row)
-        put_vector(add(b.centre, at.b.arm), points_b, 0, row)
+        pose, a, b = pose_of(block.poses, row), body_of(block.a, row), body_of(block.b, row)
+        at = farthest(a, b, pose, ahead(turn_of(block.turns, row)))
+        put_vector(at.x_a, block.a.points, 0, row)
+        put_vector(add(b.centre, at.b.arm), block.b.points, 0, row)
 
 
 @small
-def see_from(chart, o, reals, points, side):
-    """Take a chart, whose reals begin at o, where it sees a point deeper than those before it."""
-    at = side.at
-    for row in range(ROWS):
-        last = Best(side.chart[row], at[lane(P, row)], at[lane(Q, row)], at[lane(DEPTH, row)])
-        best = better_of(last, chart, o, reals, vector_of(points, 0, row))
-        at[lane(P, row)], at[lane(Q, row)] = best.p, best.q
-        at[lane(DEPTH, row)] = best.depth
-        side.chart[row] = best.chart
+def best_of(side, row):
+    return Best(side.chart[row], vector_of(side.at, SEEN, row))
 
 
 @small
-def choose_charts(ints, reals, points, side):
-    """Of every row the chart that sees its point the best, its map and the parameters in it."""
+def put_best(best, side, row):
+    side.chart[row] = best.chart
+    put_vector(best.y, side.at, SEEN, row)
+
+
+@small
+def choose_charts(ints, reals, side):
+    """`deepest` of all rows, which are of one body."""
     for row in range(ROWS):
-        side.chart[row] = 0
-        side.at[lane(DEPTH, row)] = 0.0
+        put_best(NONE_SEES, side, row)
     for c in range(ints[L.N_CHARTS]):
-        see_from(c, ints[chart_record(ints, c) + L.CHART_REALS], reals, points, side)
+        o = ints[chart_record(ints, c) + L.CHART_REALS]
+        for row in range(ROWS):
+            y = seen_by(reals, o, vector_of(side.points, 0, row))
+            put_best(deeper_of(best_of(side, row), c, y), side, row)
+
+
+@small
+def put_chart(ints, reals, side, row):
+    """Put the map of a row's chart into lanes."""
+    o = ints[chart_record(ints, side.chart[row]) + L.CHART_REALS]
+    for k in range(12):
+        side.at[lane(MAP + k, row)] = reals[o + L.AFFINE + k]
+    side.at[lane(OUTWARD, row)] = reals[o + L.OUTWARD]
+
+
+@small
+def find_charts(pair_at, given, which, alike, block):
+    """The charts that see the points the deepest."""
+    if alike:
+        pair = pair_at(given, which[0])
+        choose_charts(pair.ints_a, pair.reals_a, block.a)
+        choose_charts(pair.ints_b, pair.reals_b, block.b)
+        for row in range(ROWS):
+            put_chart(pair.ints_a, pair.reals_a, block.a, row)
+            put_chart(pair.ints_b, pair.reals_b, block.b, row)
+        return
     for row in range(ROWS):
-        o = ints[chart_record(ints, side.chart[row]) + L.CHART_REALS]
-        side.at[lane(OUTWARD, row)] = reals[o + L.OUTWARD]
-        for k in range(12):
-            side.affine[lane(k, row)] = reals[o + L.AFFINE + k]
+        pair = pair_at(given, which[row])
+        x_a, x_b = vector_of(block.a.points, 0, row), vector_of(block.b.points, 0, row)
+        put_best(deepest(pair.ints_a, pair.reals_a, x_a), block.a, row)
+        put_best(deepest(pair.ints_b, pair.reals_b, x_b), block.b, row)
+        put_chart(pair.ints_a, pair.reals_a, block.a, row)
+        put_chart(pair.ints_b, pair.reals_b, block.b, row)
+
+
+@small
+def find_parameters(side):
+    """The parameters of every row's point in its chart."""
+    for row in range(ROWS):
+        p, q, _ = gnomonic(vector_of(side.at, SEEN, row))
+        side.at[lane(P, row)], side.at[lane(Q, row)] = p, q
 
 
 @small
@@ -154,59 +171,56 @@ def witness_of(side, row):
         at[lane(P, row)],
         at[lane(Q, row)],
         at[lane(OUTWARD, row)],
-        twelve_of(side.affine, row),
+        twelve_at(at, MAP, row),
     )
 
 
 @small
-def correct(poses, a, b, steps):
+def correct(block):
     """Newton's step of the pair system, of every row."""
     for row in range(ROWS):
-        step = correction(pose_of(poses, row), witness_of(a, row), witness_of(b, row))
+        a, b = witness_of(block.a, row), witness_of(block.b, row)
+        step = correction(pose_of(block.poses, row), a, b)
         for k in range(4):
-            steps[lane(k, row)] = step[k]
+            block.steps[lane(k, row)] = step[k]
 
 
 @small
 def take(steps, a, b):
     for row in range(ROWS):
-        a.at[lane(P, row)] -= steps[lane(0, row)]
-        a.at[lane(Q, row)] -= steps[lane(1, row)]
-        b.at[lane(P, row)] -= steps[lane(2, row)]
-        b.at[lane(Q, row)] -= steps[lane(3, row)]
+        a[lane(P, row)] -= steps[lane(0, row)]
+        a[lane(Q, row)] -= steps[lane(1, row)]
+        b[lane(P, row)] -= steps[lane(2, row)]
+        b[lane(Q, row)] -= steps[lane(3, row)]
 
 
 @small
-def weigh(pair, tolerance, poses, poses_a, a, b, answers, good):
+def weigh(block):
     """The numbers of every row's answer, by `standoff.kernels.state.arrays`; good[row] is 1 where
     it is converged and proven."""
-    near = POLISHED * contact_scale(pair)
     for row in range(ROWS):
-        of_a, of_b = witness_of(a, row), witness_of(b, row)
-        found = weighed(pair, tolerance, near, pose_of(poses, row), of_a, of_b)
-        good[row] = 1 if found.good else 0
-        put_answer(answers, ROWS, row, pair, pose_of(poses_a, row), (of_a, of_b), found)
+        pair, pose, goal = pair_of(block, row), pose_of(block.poses, row), block.goals[row]
+        of_a, of_b = witness_of(block.a, row), witness_of(block.b, row)
+        found = weighed(pair, goal, POLISHED * contact_scale(pair), pose, of_a, of_b)
+        block.good[row] = 1 if found.good else 0
+        world = pose_of(block.poses_a, row)
+        put_answer(block.answers, ROWS, row, pair, world, (of_a, of_b), found)
 
 
 @kernel
-def query_block(pair, tolerance, poses, poses_a, answers, good):
-    """Cold queries of a block of ellipsoids.
+def query_block(pair_at, given, which, alike, block):
+    """Cold queries of a block of ellipsoids, whose poses and goals are in lanes.
 
-    poses, poses_a: lanes of B's poses in A's frame, and of A's in world.
+    pair_at(given, which[row]) are the bodies of a row; `alike` says that they are the same in all.
     """
-    ia, ra, ib, rb = pair
-    of_a, of_b = ellipsoid_of(map_of(ia, ra, 0)), ellipsoid_of(map_of(ib, rb, 0))
-    turns = reals_on_stack(N_TURN)
-    find_normals(of_a, of_b, poses, turns)
-    points_a, points_b = reals_on_stack(N_VECTOR), reals_on_stack(N_VECTOR)
-    find_points(of_a, of_b, poses, turns, points_a, points_b)
-    a = Side(ints_on_stack(ROWS), reals_on_stack(N_SIDE), reals_on_stack(N_POSE))
-    b = Side(ints_on_stack(ROWS), reals_on_stack(N_SIDE), reals_on_stack(N_POSE))
-    choose_charts(ia, ra, points_a, a)
-    choose_charts(ib, rb, points_b, b)
-    steps = reals_on_stack(N_SIDE)
-    correct(poses, a, b, steps)
-    take(steps, a, b)
-    weigh(pair, tolerance, poses, poses_a, a, b, answers, good)
+    put_bodies(pair_at, given, which, alike, block)
+    find_normals(block)
+    find_points(block)
+    find_charts(pair_at, given, which, alike, block)
+    find_parameters(block.a)
+    find_parameters(block.b)
+    correct(block)
+    take(block.steps, block.a.at, block.b.at)
+    weigh(block)
     for row in range(ROWS):
-        answers[lane(TRIED, row)] = turns[lane(COUNT, row)]
+        block.answers[lane(TRIED, row)] = block.turns[lane(COUNT, row)]

@@ -8,13 +8,14 @@ from standoff.kernels.compiler.decorators import reals_on_stack, small
 from standoff.kernels.lanes.layout import (
     N_POSE,
     ROWS,
+    bounded_pair,
     lane,
     pose_of,
     put_pose,
     put_vector,
     vector_of,
 )
-from standoff.kernels.values import Motion, Pair
+from standoff.kernels.values import Motion
 
 # One side: its chart's affine map (12), the sign of its normals, the rectangle well inside the
 # face (4), and the header of the body's reals (10).
@@ -33,9 +34,6 @@ N_DESCENT = 14 * ROWS
 # What is found: distance and bound of the cores, normal, both points and their tangents.
 D, LOWER, NORMAL, JETS = 0, 1, 2, 5
 N_FOUND = 23 * ROWS
-
-BOUNDED = (0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)
-"""The header of a bounded body's ints, as far as the certificate reads it: `L.UNBOUNDED` is 0."""
 
 
 class Block(NamedTuple):
@@ -101,20 +99,9 @@ def put_four(x, block, k, row):
 
 
 @small
-def header_of(side, row):
-    """The header of a row's body."""
-    return (
-        side[lane(HEADER, row)], side[lane(HEADER + 1, row)], side[lane(HEADER + 2, row)],
-        side[lane(HEADER + 3, row)], side[lane(HEADER + 4, row)], side[lane(HEADER + 5, row)],
-        side[lane(HEADER + 6, row)], side[lane(HEADER + 7, row)], side[lane(HEADER + 8, row)],
-        side[lane(HEADER + 9, row)],
-    )  # fmt: skip
-
-
-@small
 def pair_of(block, row):
     """Both bodies of a row, of which no more than the headers is known."""
-    return Pair(BOUNDED, header_of(block.a, row), BOUNDED, header_of(block.b, row))
+    return bounded_pair(block.a, block.b, HEADER, row)
 
 
 @small

@@ -52,7 +52,7 @@ from standoff.kernels.lanes.frame_layout import (
     put_motion,
     tangents_of,
 )
-from standoff.kernels.lanes.layout import ROWS, lane, put_vector, twelve_of, vector_of
+from standoff.kernels.lanes.layout import ROWS, lane, put_header, put_vector, twelve_of, vector_of
 from standoff.kernels.lanes.rows import Witness, cones_between, seen
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import (
@@ -88,8 +88,7 @@ def put_side(ints, reals, chart, side, row):
     side[lane(OUTWARD, row)] = reals[o + L.OUTWARD]
     for k in range(4):
         side[lane(INNER + k, row)] = reals[o + L.INNER + k]
-    for k in range(L.REAL_HEADER):
-        side[lane(HEADER + k, row)] = reals[k]
+    put_header(reals, side, HEADER, row)
 
 
 @kernel

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 from standoff.kernels.algebra.vectors import add, rotate, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record, moved_jet, outward, pair_span
-from standoff.kernels.body.jets import affine_at, chart_parameters, mapped_by, sphere_jet
-from standoff.kernels.compiler.decorators import kernel, small
+from standoff.kernels.body.jets import affine_at, gnomonic, mapped_by, sphere_jet
+from standoff.kernels.compiler.decorators import kernel, small, small_uncontracted
 from standoff.kernels.depth.penetration import contact_scale
 from standoff.kernels.frame.answer import swept_point
 from standoff.kernels.lanes.layout import put_strided, strided
@@ -47,12 +47,10 @@ TRIED = OUT_COUNTS
 
 
 class Best(NamedTuple):
-    """Where the chart that sees a point the best sees it."""
+    """The chart that sees a point the deepest."""
 
     chart: int
-    p: float
-    q: float
-    depth: float
+    y: Vector  # the point in the chart's axes
 
 
 class Witness(NamedTuple):
@@ -77,7 +75,7 @@ class Weighed(NamedTuple):
     good: bool  # converged, proven and apart
 
 
-NONE_SEES = Best(0, 0.0, 0.0, 0.0)
+NONE_SEES = Best(0, ORIGIN)
 
 
 @small
@@ -96,17 +94,39 @@ def map_of(ints, reals, chart):
     return affine_at(reals, ints[chart_record(ints, chart) + L.CHART_REALS] + L.AFFINE)
 
 
-@small
-def better_of(best, chart, o, reals, x):
-    """A chart, whose reals begin at o, where it sees a point deeper than the best before it."""
-    p, q, depth = chart_parameters(reals, o, x)
-    deeper = depth > best.depth
-    return Best(
-        chart if deeper else best.chart,
-        p if deeper else best.p,
-        q if deeper else best.q,
-        max(depth, best.depth),
+@small_uncontracted
+def seen_by(reals, o, x):
+    """A point in the axes of the chart whose reals begin at o: the third number is how deep the
+    chart sees it.
+
+    Blocks of one pair ask this in vectors, others row by row: they find the same numbers.
+    """
+    m = o + L.AFFINE
+    arm = (x[0] - reals[m + 9], x[1] - reals[m + 10], x[2] - reals[m + 11])
+    k = o + L.INVERSE
+    return (
+        reals[k] * arm[0] + reals[k + 1] * arm[1] + reals[k + 2] * arm[2],
+        reals[k + 3] * arm[0] + reals[k + 4] * arm[1] + reals[k + 5] * arm[2],
+        reals[k + 6] * arm[0] + reals[k + 7] * arm[1] + reals[k + 8] * arm[2],
     )
+
+
+@small
+def deeper_of(best, chart, y):
+    """A chart that sees a point as y, where it sees it deeper than the best before it."""
+    deeper = y[2] > best.y[2]
+    way = (y[0] if deeper else best.y[0], y[1] if deeper else best.y[1], max(y[2], best.y[2]))
+    return Best(chart if deeper else best.chart, way)
+
+
+@small
+def deepest(ints, reals, x):
+    """The chart that sees a point of the body the deepest."""
+    best = NONE_SEES
+    for c in range(ints[L.N_CHARTS]):
+        y = seen_by(reals, ints[chart_record(ints, c) + L.CHART_REALS], x)
+        best = deeper_of(best, c, y)
+    return best
 
 
 @small
@@ -193,11 +213,10 @@ def normal_between(a, b, pose):
 @small
 def witness_at(ints, reals, x):
     """A point in the chart that sees it the best."""
-    best = NONE_SEES
-    for c in range(ints[L.N_CHARTS]):
-        best = better_of(best, c, ints[chart_record(ints, c) + L.CHART_REALS], reals, x)
+    best = deepest(ints, reals, x)
     o = ints[chart_record(ints, best.chart) + L.CHART_REALS]
-    return Witness(best.chart, best.p, best.q, reals[o + L.OUTWARD], affine_at(reals, o + L.AFFINE))
+    p, q, _ = gnomonic(best.y)
+    return Witness(best.chart, p, q, reals[o + L.OUTWARD], affine_at(reals, o + L.AFFINE))
 
 
 @small

@@ -38,7 +38,8 @@ from standoff.sweep.proof.tolerances import (
 )
 from standoff.sweep.subjects.shaped_body import answered_shapes, some_poses
 from standoff.tracking.answers import AnswerArrays, proven
-from standoff.tracking.many_distances import Distances, fit_poses
+from standoff.tracking.distance_arrays import Distances
+from standoff.tracking.many_distances import fit_poses
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

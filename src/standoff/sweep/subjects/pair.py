@@ -20,7 +20,8 @@ from standoff.sweep.subjects.scene_pair import ScenePair
 from standoff.sweep.subjects.shaped_body import Shaped, answered_shapes, groups
 from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.tolerances import SOUND_HOME
-from standoff.tracking.many_distances import Distances, answered_rows, fit_poses
+from standoff.tracking.distance_arrays import Distances
+from standoff.tracking.many_distances import answered_rows, fit_poses
 
 Array = NDArray[np.float64]
 
