@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 import standoff as so
 from standoff.kernels.algebra import roots
-from standoff.kernels.lanes import ellipsoids
-from standoff.kernels.lanes.layout import N_POSE, ROWS
+from standoff.kernels.lanes import cold_layout, ellipsoids
+from standoff.kernels.lanes.layout import ROWS
 from standoff.kernels.values import Pair
 
 counts: Counter[str] = Counter()
@@ -27,6 +27,8 @@ METHODS = {
     "multiply": ("__mul__", "__rmul__"),
     "divide": ("__truediv__", "__rtruediv__"),
 }
+GOAL = 1e-6
+"""How narrow the gap of a proof must be, in spans."""
 APART = 2.6
 """Between the origins, length."""
 
@@ -80,17 +82,19 @@ def main() -> None:
         for method in methods:
             count(name, method)
     roots._root = root
-    ellipsoids.reals_on_stack = lambda size: counted(np.zeros(size))
+    cold_layout.reals_on_stack = lambda size: counted(np.zeros(size))
     pair = Pair(a.ints, counted(a.reals), b.ints, counted(b.reals))
     still = np.zeros((12, ROWS))
     still[[0, 4, 8]] = 1.0
-    answers, good = counted(np.zeros(ellipsoids.N_ANSWER)), np.zeros(ROWS, dtype=np.int64)
-    assert still.size == N_POSE
+    block, which = cold_layout.block_on_stack(), np.zeros(ROWS, dtype=np.int64)
+    for lanes, poses in ((block.poses, drawn()), (block.poses_a, still)):
+        lanes[:] = counted(poses)
+    block.goals[:] = counted(np.full(ROWS, GOAL))
     counts.clear()
-    ellipsoids.query_block(pair, 1e-6, counted(drawn()), counted(still), answers, good)
-    tried = answers[ellipsoids.TRIED * ROWS :].astype(float)
+    ellipsoids.query_block(lambda *_: pair, None, which, True, block)
+    tried = block.answers[ellipsoids.TRIED * ROWS :].astype(float)
     told = {name: number / ROWS for name, number in counts.items()}
-    print(json.dumps(told | {"tried": float(tried.mean()), "proven": int(good.sum())}))
+    print(json.dumps(told | {"tried": float(tried.mean()), "proven": int(block.good.sum())}))
 
 
 if __name__ == "__main__":

@@ -28,7 +28,8 @@ from benchmarks import many_frames
 from benchmarks.many_frames import drawn
 from standoff.kernels.entries import batch
 from standoff.kernels.state import arrays as K
-from standoff.tracking.reached import cold_table
+from standoff.tracking.reached import cold_tables
+from standoff.tracking.row_pairs import row_pairs
 from standoff.tracking.threads import in_parts
 
 Array = NDArray[np.float64]
@@ -41,24 +42,25 @@ ROUNDS = 5
 BEYOND_ALL = 1e6
 """A horizon, length, that no row is beyond: it takes the general code."""
 REST = np.eye(4)[None]
-WHICH = np.zeros(1, dtype=np.int64)
-"""Of one pair for all rows."""
+
+
+Bodies = so.Body | list[so.Body]
 
 
 class Rows:
     """The compiled loop over rows, with what it writes to."""
 
-    def __init__(self, a: so.Body, b: so.Body, poses: Array, within: float | None) -> None:
-        self.table, self.poses = cold_table(a, b, within), poses
+    def __init__(self, a: Bodies, b: Bodies, poses: Array, within: float | None) -> None:
+        self.tables, self.poses = cold_tables(row_pairs(a, b), within), poses
         self.rows, self.done = np.empty((len(poses), K.N_OUT)), np.zeros(len(poses), dtype=np.int64)
 
     def run(self, workers: int = 1) -> float:
         """Seconds."""
 
-        poses = REST, self.poses
+        given = self.tables.address, self.tables.which, REST, self.poses
 
         def part(first: int, end: int) -> None:
-            batch.starts(self.table.address, WHICH, *poses, first, end, self.rows, self.done)
+            batch.starts(*given, first, end, self.rows, self.done)
 
         begun = time.perf_counter()
         in_parts(part, len(self.poses), workers)
@@ -144,6 +146,30 @@ def compared(axes: tuple[Any, Any], n: int) -> tuple[float, float, float, float]
     return one, two, other, float(miss / (a.size + b.size))
 
 
+KINDS, MIXED = (2, 10, 40), 100_000
+"""Ellipsoids of different axes, each of which may stand on either side of a row; rows of them."""
+
+
+def of_different_bodies(count: int) -> str:
+    """Rows whose bodies are drawn from `count` ellipsoids, beside rows of two of these."""
+    rng = np.random.default_rng(1)
+    kinds = [so.shapes.ellipsoid(*axes) for axes in rng.uniform(0.2, 1.0, size=(count, 3))]
+    poses = drawn(MIXED, (2.1, 4.0))
+    a, b = ([kinds[k] for k in rng.integers(0, count, MIXED)] for _ in range(2))
+    every = {"mixed": Rows(a, b, poses, None), "alike": Rows(kinds[0], kinds[1], poses, None)}
+    taken: dict[str, list[float]] = {name: [] for name in every}
+    for each in every.values():
+        each.run()
+    for _ in range(ROUNDS):
+        for name, each in every.items():
+            taken[name].append(each.run() / MIXED)
+    mixed, alike = median(taken["mixed"]), median(taken["alike"])
+    return (
+        f"rows of {len(every['mixed'].tables.tables)} pairs: {1e9 * mixed:.0f} ns, of one "
+        f"pair {1e9 * alike:.0f} ns ({mixed / alike:.2f} times)"
+    )
+
+
 def main() -> None:
     """Print times, ratios, the share of the peak and the counts of instructions."""
     fused = peak()
@@ -164,6 +190,8 @@ def main() -> None:
             f"({counted['divide']:.0f} divisions, {counted['root']:.0f} roots), "
             f"{flops / one / (2.0 * fused):.1%} of the peak"
         )
+    for count in KINDS:
+        print(of_different_bodies(count))
     print("machine code:", dict(sorted(instructions("batch", "starts").items())))
     for line in many_frames.told(SHAPES):
         print(line)
