@@ -187,7 +187,6 @@ def answer_next(pair, options, block, asked):
     long = reals_on_stack(N_LONG_BLOCK)
     for k in range(BLOCK_STATE, BLOCK_EVENTS):
         long[k] = block[k]
-    long[BLOCK_POLYTOPE] = N_BLOCK if kept != 0 else 0.0
     done = answered_by(pair, options, long, N_LONG_BLOCK, Polytopes(last, own))
     for k in range(N_BLOCK):
         block[k] = long[k]
@@ -241,7 +240,10 @@ def begin_asked(answering, k):
 
 @kernel
 def end_asked(answering, k, good):
-    """Answer row k where it is not, and note what its answer says."""
+    """Answer row k where it is not, and note what its answer says.
+
+    A row that keeps a polytope was inside, and is never answered by a smooth frame.
+    """
     asked, p, q = asked_of(answering, k)
     block, done = reals_at(asked[A_OWN], N_BLOCK), FINE
     if not good:
@@ -250,8 +252,6 @@ def end_asked(answering, k, good):
             done = answer_anew(pair, options, block)
         else:
             done = answer_next(pair, options, block, asked)
-    elif asked[A_POLYTOPE] != 0:
-        reals_at(asked[A_POLYTOPE], N_POLYTOPE)[N_VERTICES] = 0.0
     if done == FINE:
         at = asked[A_PAIR]
         known, ints = answering.pairs.known, answering.pairs.ints
