@@ -14,7 +14,7 @@ import pytest
 import standoff as so
 from standoff import simulation as sim
 from standoff.kernels.state import arrays as K
-from standoff.tracking import cold_query, many_distances
+from standoff.tracking import cold_query, many_distances, reached
 
 STRICT = so.PredictorCorrector(tolerance=1e-16)
 CAPSULE, BALL, WALL = (
@@ -90,7 +90,7 @@ def test_cold_queries_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     tracker, poses = so.Tracker(*PAIRS[name], law=STRICT), motion(name)
     starts = [tracker.start(HOME, pose).proximity.row for pose in poses]
     assert 0 < overlaps(starts) < FRAMES
-    for module in (many_distances, cold_query):
+    for module in (reached, cold_query):
         monkeypatch.setattr(module, "cold_table", lambda a, b, within: tracker.table)
     monkeypatch.setattr(many_distances, "Tracker", partial(so.Tracker, law=STRICT))
     found = so.distances(*PAIRS[name], HOME, poses)
