@@ -122,6 +122,9 @@ def test_rows_follow_those_of_their_own_bodies(rng):
 def test_derivatives_are_those_of_each_pair(rng):
     n = 40
     (a, b), poses = lists(rng, n, [*EGGS, BOX, LENS]), drawn(rng, n)
+    a[7] = b[7] = BOX
+    poses[7] = np.eye(4)
+    poses[7, 0, 3] = 1.0  # face to face
     found = so.distances(a, b, np.eye(4), poses)
     derived, gradient = found.derivatives(workers=2), found.gradient
     for k in range(n):
@@ -131,6 +134,7 @@ def test_derivatives_are_those_of_each_pair(rng):
         assert derived.reasons.get(k) == own.reasons.get(0)
         np.testing.assert_array_equal(derived.hessian[k], own.hessian[0])
         np.testing.assert_array_equal(gradient[k], alone.gradient[0])
+    assert 7 in derived.reasons
 
 
 def test_refused_rows_and_the_rows_of_one_pair(rng):
