@@ -93,7 +93,10 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
     at = np.zeros(len(pairs), dtype=int)
     middle = sight.middle(pairs, frames, at, ways)
     reaches, watched = middle.reaches, sight.watched
-    cut = seen_from(_sums(reaches.h * reaches.r_a, reaches.h * reaches.r_b), reaches)
+    chords = np.where(
+        reaches.turns > 0, 2.0 * np.sin(np.minimum(reaches.h, np.pi) / 2.0), reaches.h
+    )
+    cut = seen_from(_sums(chords * reaches.r_a, chords * reaches.r_b), reaches)
     assert np.array_equal(cut.bound, middle.way)
     normals = rng.normal(size=(len(pairs), 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -237,7 +240,7 @@ def test_a_folded_arm_is_accelerated_more_where_it_unfolds() -> None:
     true = abs(-1.0 + 4.0 * np.exp(1j))  # of exp(i t) (1 - exp(i t)) at t = 1
     assert true == pytest.approx(3.56, abs=0.01)
     assert true <= found
-    assert middle.way[0] == pytest.approx(1.0, abs=1e-8)
+    assert middle.way[0] == pytest.approx(2.0 * np.sin(0.5), abs=1e-8)  # a chord of 1 rad
 
 
 def test_a_free_joint_of_pinocchio_swerves_no_more_than_the_bound() -> None:

@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.robots.limits import check_limits
-from standoff.robots.motion_bounds import Reaches
 from standoff.robots.motions import Frames
-from standoff.robots.sight import Middle, Sight, closing, some_of
+from standoff.robots.sight import Apart, Middle, Sight, closing, gains, some_of
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
@@ -82,10 +81,10 @@ class RobotBox(ParameterBox):
 
     def moves(self, cells: Cells) -> tuple[Array, Array]:
         n = len(cells.place)
-        _, _, at, _, middle = self._seen(cells)
+        _, frames, at, pairs, middle = self._seen(cells)
         whole, ways = np.zeros(n), np.zeros((n, len(self.parameters)))
         np.maximum.at(whole, at, middle.way)
-        np.maximum.at(ways, at, self._by_column(middle.reaches))
+        np.maximum.at(ways, at, self._gains(middle, self.sight.by_boxes(pairs, frames, at, middle)))
         return whole, ways
 
     def look(self, cells: Cells) -> Looked:
@@ -99,6 +98,8 @@ class RobotBox(ParameterBox):
         some = some_of(middle, ask)
         bound[ask] = np.maximum(bound[ask], apart.lower - closing(some, apart))
         bound -= self.doubt
+        best = boxed._replace(normals=boxed.normals.copy(), along=boxed.along.copy())
+        best.normals[ask], best.along[ask] = apart.normals, apart.along
         np.minimum.at(distance, at[ask], apart.upper + self.doubt)
         np.minimum.at(upper, at[ask], apart.upper + some.way + self.doubt)
         known, moved = cells.known.copy(), np.zeros(n)
@@ -107,23 +108,20 @@ class RobotBox(ParameterBox):
         open_ = known[at, pairs] < self.clearance
         np.maximum.at(moved, at[open_], middle.way[open_])
         ways = np.zeros((n, len(self.parameters)))
-        # along what moves the pair most that stands in the way most
+        # along what gives back most of the pair that stands in the way most
         worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
-        ways[at[worst]] = self._by_column(some_of(middle, worst).reaches)
+        ways[at[worst]] = self._gains(some_of(middle, worst), Apart(*(x[worst] for x in best)))
         # and where the middle is too near, of the pair that is nearest there
         steps = ways.copy()
         nearest = np.flatnonzero(apart.upper + self.doubt == distance[at[ask]])
-        steps[at[ask[nearest]]] = self._by_column(some_of(some, nearest).reaches)
+        steps[at[ask[nearest]]] = self._gains(some_of(some, nearest), None)
         told = Told(lower, upper, distance, ways, steps)
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
         return self.decided(cells, moved, told, asked)._replace(known=known)
 
-    def _by_column(self, reaches: Reaches) -> Array:
-        """How far each parameter moves the two pieces of a pair against each other (k, columns)."""
-        ways = reaches.h * np.minimum(reaches.r_a, reaches.r_b)
-        found = np.zeros((len(ways), len(self.parameters)))
-        columns = np.append(self.columns, -1)[reaches.chain]
-        for k in range(len(self.parameters)):
-            found[:, k] = np.where((columns == k) & (reaches.chain >= 0), ways, 0.0).sum(axis=1)
-        return found
+    def _gains(self, middle: Middle, apart: Apart | None) -> Array:
+        """What halving each parameter gives back of what its pairs can move (k, columns)."""
+        chain = middle.reaches.chain
+        numbers = np.where(chain >= 0, np.append(self.columns, -1)[chain], -1)
+        return gains(middle, apart, numbers, len(self.parameters))
