@@ -1,16 +1,21 @@
 """How far the pieces of a pair can move against each other while the joints stay in a box.
 
 Let the joints leave their places q0 by at most h. Seen from any link of the pair's chain (the
-*cut*), no point of A goes farther than Σ hₖ rₖ over the motions k between the cut and A, and none
-of B farther than the same sum on B's side. r of a shift is 1; of a turn it is the greatest distance
-of the piece's points from the axis at q0: the motions are made one after the other, that nearest to
-the cut first, so that what is behind an axis still is as at q0 while it turns. The radius of a
-swept body moves with its core and has no part in it.
+*cut*), no point of A goes farther than Σ cₖ rₖ over the motions k between the cut and A, and none
+of B farther than the same sum on B's side. c of a shift is h, and of a turn its chord 2 sin(h/2); r
+of a shift is 1, and of a turn it is the greatest distance of the piece's points from the axis at
+q0: the motions are made one after the other, that nearest to the cut first, so that what is behind
+an axis still is as at q0 while it turns. The radius of a swept body moves with its core and has no
+part in it.
+
+Along a normal n, motion k gives what it does along n at q0 by itself, and no more than Nₖ cₖ rₖ
+beside that: the motions before it carry its way as they turn it, by which n, seen from it, is
+another direction, at most Nₖ away.
 
 With the joints' speeds u and accelerations α, no point of A is accelerated by more than
 Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ of turns only:
 the second derivatives of the kinematics are ωᵢ × ∂x/∂qₖ. w is r in the whole box: how far the
-motions between an axis and the piece can carry its points is added, from the piece on.
+motions between an axis and the piece can carry its points is added.
 docs/certify.md has the proofs.
 """
 
@@ -206,24 +211,21 @@ class _Along(NamedTuple):
     part : (k, n) array
         Of a unit of that way, how much can be along the direction.
     turn : (k, n) array
-        How far it turns a unit vector that is across its axis.
-    across : (k, n) array
-        The part of the direction that is across its axis.
+        How far it turns the direction, a unit vector.
     """
 
     first: Array
     way: Array
     part: Array
     turn: Array
-    across: Array
 
 
 def _count(on: _Along, i: int, cost: Array, turned: Array) -> None:
     """Add motion i as seen from some cuts (k, cuts), from which its direction was ``turned``."""
-    way, across = on.way[:, i, None], on.across[:, i, None]
+    way = on.way[:, i, None]
     part = np.minimum(1.0, on.part[:, i, None] + turned)
     cost += np.minimum(part * way, on.first[:, i, None] + turned * way)
-    turned += np.minimum(1.0, across + turned) * on.turn[:, i, None]
+    turned += on.turn[:, i, None]
 
 
 def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) -> _Along:
@@ -245,8 +247,8 @@ def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) 
     across = np.sqrt(np.einsum("kni,kni->kn", levers, levers)) + BOUND_INFLATION
     part = np.where(free, 1.0, np.where(turns, across, shift))
     first = np.where(free, way, np.where(turns, arc + BOUND_INFLATION * way, shift * way))
-    turn = np.where(turns, chords(reaches.h, reaches.turns), 0.0)
-    return _Along(first, way, part, turn, np.where(free, 1.0, across))
+    turn = np.where(turns, chords(reaches.h, reaches.turns) * np.where(free, 1.0, across), 0.0)
+    return _Along(first, way, part, turn)
 
 
 def _spread(directions: Array, seen: Seen, half: Array) -> Array:

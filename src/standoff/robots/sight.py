@@ -250,7 +250,7 @@ def gains(middle: Middle, apart: Apart | None, numbers: Ints, most: int) -> Arra
     bound = least_way(all_.reaches).bound
     if apart is not None:
         all_ = all_._replace(way=bound)
-        bound = closing(all_, Apart(*(each[every] for each in apart)))
+        bound = closing(all_, Apart._make(each[every] for each in apart))
     of_number = bound.reshape(most + 1, k)
     found: Array = (of_number[most] - of_number[:most]).T
     own = reaches.h * np.minimum(reaches.r_a, reaches.r_b)

@@ -21,6 +21,7 @@ from standoff.sweep.subjects.robot import RobotSubject
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 SEEN_TOGETHER = 8192
 """Pairs in cells whose bounding boxes are seen at once: some 10 MB."""
@@ -93,7 +94,7 @@ class RobotBox(ParameterBox):
         boxed = self.sight.by_boxes(pairs, frames, at, middle)
         bound = boxed.lower - closing(middle, boxed)
         upper, distance = np.full(n, np.inf), np.full(n, np.inf)
-        ask = np.flatnonzero(bound - self.clearance < self.doubt)
+        ask = np.flatnonzero(self._worth(pairs, middle, boxed, bound))
         apart = self.sight.ask(pairs[ask], q, frames, at[ask])
         some = some_of(middle, ask)
         bound[ask] = np.maximum(bound[ask], apart.lower - closing(some, apart))
@@ -110,7 +111,7 @@ class RobotBox(ParameterBox):
         ways = np.zeros((n, len(self.parameters)))
         # along what gives back most of the pair that stands in the way most
         worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
-        ways[at[worst]] = self._gains(some_of(middle, worst), Apart(*(x[worst] for x in best)))
+        ways[at[worst]] = self._gains(some_of(middle, worst), Apart._make(x[worst] for x in best))
         # and where the middle is too near, of the pair that is nearest there
         steps = ways.copy()
         nearest = np.flatnonzero(apart.upper + self.doubt == distance[at[ask]])
@@ -119,6 +120,26 @@ class RobotBox(ParameterBox):
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
         return self.decided(cells, moved, told, asked)._replace(known=known)
+
+    def _worth(self, pairs: Whole, middle: Middle, boxed: Apart, bound: Array) -> Bools:
+        """Is a pair asked? Not where its boxes prove it, nor where a query would hardly prove
+        anything: as far as can be seen the middle is too near for that, and surely too far for a
+        violation of the whole cell."""
+        watched = self.sight.watched
+        a, b = watched.a[pairs], watched.b[pairs]
+        between = middle.seen[1].centres - middle.seen[0].centres
+        flat = watched.cores.planes[a] | watched.cores.planes[b]
+        apart = np.where(
+            flat,
+            np.einsum("ki,ki->k", boxed.normals, between),
+            np.sqrt(np.einsum("ki,ki->k", between, between)),
+        )
+        for piece in (a, b):
+            apart -= watched.cores.radius[piece] + watched.cores.half[piece].min(axis=1)
+        taken = boxed.lower - bound
+        hopeless = (apart - taken < self.clearance) & (boxed.lower + middle.way >= self.clearance)
+        found: Bools = (bound - self.clearance < self.doubt) & ~hopeless
+        return found
 
     def _gains(self, middle: Middle, apart: Apart | None) -> Array:
         """What halving each parameter gives back of what its pairs can move (k, columns)."""
