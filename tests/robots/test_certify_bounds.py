@@ -14,7 +14,7 @@ from shares import only
 from standoff.robots.joints import JointKind
 from standoff.robots.motion_bounds import bends, least_way_along, seen_from
 from standoff.robots.motions import motions_of
-from standoff.robots.sight import Sight
+from standoff.robots.sight import Apart, Middle, Sight, closing, gains
 
 KINDS = (
     JointKind.HINGE,
@@ -93,7 +93,10 @@ def test_no_point_goes_farther_than_the_bound(seed: int) -> None:
     at = np.zeros(len(pairs), dtype=int)
     middle = sight.middle(pairs, frames, at, ways)
     reaches, watched = middle.reaches, sight.watched
-    cut = seen_from(_sums(reaches.h * reaches.r_a, reaches.h * reaches.r_b), reaches)
+    chords = np.where(
+        reaches.turns > 0, 2.0 * np.sin(np.minimum(reaches.h, np.pi) / 2.0), reaches.h
+    )
+    cut = seen_from(_sums(chords * reaches.r_a, chords * reaches.r_b), reaches)
     assert np.array_equal(cut.bound, middle.way)
     normals = rng.normal(size=(len(pairs), 3))
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -200,6 +203,77 @@ def test_the_bound_is_exact_of_one_hinge() -> None:
     assert found[0] == pytest.approx([18.0, 0.0], abs=1e-7)
 
 
+def on_hinges(
+    axes: np.ndarray, ends: np.ndarray, normal: np.ndarray, h: np.ndarray
+) -> tuple[Middle, Apart]:
+    """A point on a chain of hinges that start at ``ends`` and end in the last of them,
+    away from a half-space with an inward normal."""
+    places = [np.eye(4) for _ in axes]
+    for place, step in zip(places, np.diff(ends, axis=0, prepend=np.zeros((1, 3))), strict=False):
+        place[:3, 3] = step
+    tip = np.eye(4)
+    tip[:3, 3] = ends[-1] - ends[-2]
+    ball, plane = so.shapes.sphere(0.1), so.shapes.halfspace(-normal, -9.0)
+    n = len(axes)
+    parents = [*range(-1, n - 1)]
+    fixed = {"wall": (plane, np.eye(4))}
+    robot = robot_of([1] * n, parents, places, axes, [(n - 1, ball, tip)], fixed=fixed)
+    sight = Sight(robot)
+    at, ways = np.array([0]), np.append(h, 0.0)[None]
+    middle = sight.middle(at, sight.frames(np.zeros((1, n))), at, ways)
+    wall_is_b = bool(middle.reaches.only_a[0])
+    normals = normal[None] if wall_is_b else -normal[None]
+    unknown = np.zeros(1)
+    return middle, Apart(unknown, unknown, unknown, normals, np.array([True]))
+
+
+def turned_by(axis: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Points (..., 3) turned about an axis by each of their angles, by Rodrigues' formula."""
+    cos, sin = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    return x * cos + np.cross(axis, x) * sin + axis * (x @ axis)[..., None] * (1.0 - cos)
+
+
+@pytest.mark.parametrize("seed", only(range(24), range(48)))
+def test_along_a_normal_the_bound_holds_on_a_dense_grid(seed: int) -> None:
+    """Chains of up to three hinges, each asked at all corners and far inside of its box."""
+    rng = np.random.default_rng(300 + seed)
+    n = 1 + seed % 3
+    axes = rng.normal(size=(n, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    ends = rng.normal(size=(n + 1, 3))
+    normal = rng.normal(size=3)
+    if seed % 4 > 1:
+        normal = np.cross(axes[0], normal)  # the first hinge turns it as far as can be
+    normal /= np.linalg.norm(normal)
+    h = rng.uniform(0.1, 1.0, n) * 10.0 ** rng.uniform(-2.0, 0.7)
+    parts = np.linspace(-1.0, 1.0, (10001, 101, 31)[n - 1])
+    grids = np.meshgrid(*[parts * each for each in h], indexing="ij")
+    x = np.broadcast_to(ends[-1], (*grids[0].shape, 3))
+    for k in range(n - 1, -1, -1):
+        x = ends[k] + turned_by(axes[k], grids[k], x - ends[k])
+    true = float(((x - ends[-1]) @ normal).max())
+    found = float(closing(*on_hinges(axes, ends, normal, h))[0])
+    assert true <= found
+    if n == 1:  # of one hinge it is exact, but for the grid
+        assert true >= found * (1.0 - 2e-3) - 1e-6
+    if h.max() < 0.1:
+        assert true >= 0.5 * found
+
+
+def test_a_turn_about_the_normal_takes_nothing() -> None:
+    up, ends = np.array([0.0, 0.0, 1.0]), np.array([[0.0, 0, 0], [0, 0, 0.5], [1.0, 0, 0.5]])
+    both = on_hinges(np.array([up, [0.0, 1.0, 0.0]]), ends, -up, np.array([3.0, 0.2]))
+    assert closing(*both)[0] == pytest.approx(np.sin(0.2), rel=1e-6)
+    # so halving it gives nothing back, and halving the other half of it; the way is another matter
+    back = gains(*both, both[0].reaches.chain, 2)[0]
+    assert back == pytest.approx([0.0, np.sin(0.2) - np.sin(0.1)], abs=1e-6)
+    assert gains(both[0], None, both[0].reaches.chain, 2)[0, 0] > 0.3
+    still = both[0].reaches._replace(h=np.array([[9.0, 0.0]]))  # more than a turn: nothing to halve
+    own = gains(both[0]._replace(reaches=still), None, both[0].reaches.chain, 2)[0]
+    assert own[0] > 0.0
+    assert own[1] == 0.0
+
+
 def test_a_joint_that_mimics_another_moves_by_its_ratio() -> None:
     rng = np.random.default_rng(5)
     body = drawn_body(rng)
@@ -237,7 +311,7 @@ def test_a_folded_arm_is_accelerated_more_where_it_unfolds() -> None:
     true = abs(-1.0 + 4.0 * np.exp(1j))  # of exp(i t) (1 - exp(i t)) at t = 1
     assert true == pytest.approx(3.56, abs=0.01)
     assert true <= found
-    assert middle.way[0] == pytest.approx(1.0, abs=1e-8)
+    assert middle.way[0] == pytest.approx(2.0 * np.sin(0.5), abs=1e-8)  # the chord of a radian
 
 
 def test_a_free_joint_of_pinocchio_swerves_no_more_than_the_bound() -> None:

@@ -1,16 +1,21 @@
 """How far the pieces of a pair can move against each other while the joints stay in a box.
 
 Let the joints leave their places q0 by at most h. Seen from any link of the pair's chain (the
-*cut*), no point of A goes farther than Σ hₖ rₖ over the motions k between the cut and A, and none
-of B farther than the same sum on B's side. r of a shift is 1; of a turn it is the greatest distance
-of the piece's points from the axis at q0: the motions are made one after the other, that nearest to
-the cut first, so that what is behind an axis still is as at q0 while it turns. The radius of a
-swept body moves with its core and has no part in it.
+*cut*), no point of A goes farther than Σ cₖ rₖ over the motions k between the cut and A, and none
+of B farther than the same sum on B's side. c of a shift is h, and of a turn its chord 2 sin(h/2); r
+of a shift is 1, and of a turn it is the greatest distance of the piece's points from the axis at
+q0: the motions are made one after the other, that nearest to the cut first, so that what is behind
+an axis still is as at q0 while it turns. The radius of a swept body moves with its core and has no
+part in it.
+
+Along a normal n, motion k gives what it does along n at q0 by itself, and no more than Nₖ cₖ rₖ
+beside that: the motions before it carry its way as they turn it, by which n, seen from it, is
+another direction, at most Nₖ away.
 
 With the joints' speeds u and accelerations α, no point of A is accelerated by more than
 Σ wₖ (uₖ (uₖ + 2 Σᵢ uᵢ) + αₖ), i over the *turns* between the cut and k, the first uₖ of turns only:
 the second derivatives of the kinematics are ωᵢ × ∂x/∂qₖ. w is r in the whole box: how far the
-motions between an axis and the piece can carry its points is added, from the piece on.
+motions between an axis and the piece can carry its points is added.
 docs/certify.md has the proofs.
 """
 
@@ -145,18 +150,18 @@ def _from_axes(seen: Seen, half: Array, axes: Array, origins: Array) -> Array:
 def _carried(far: Array, h: Array, turns: Array, order: range) -> Array:
     """w of each motion: what the motions between it and the piece, which come first in `order`, may
     do to the distance from its axis."""
-    w = np.empty_like(far)
+    w, ways = np.empty_like(far), chords(h, turns)
     gone = np.zeros(len(far))
     for k in order:
         w[:, k] = turns[:, k] * (far[:, k] + gone) + (1.0 - turns[:, k])
-        gone = gone + h[:, k] * w[:, k]
+        gone = gone + ways[:, k] * (turns[:, k] * far[:, k] + 1.0 - turns[:, k])
     return w
 
 
 def least_way(reaches: Reaches) -> Cut:
     """How far the pieces can move against each other at most (length), from the best cut."""
-    cost = _sums(reaches.h * reaches.r_a, reaches.h * reaches.r_b)
-    return seen_from(cost, reaches)
+    ways = chords(reaches.h, reaches.turns)
+    return seen_from(_sums(ways * reaches.r_a, ways * reaches.r_b), reaches)
 
 
 def least_speed(reaches: Reaches, rates: Array) -> Cut:
@@ -171,28 +176,93 @@ def least_bend(reaches: Reaches, rates: Array, gains: Array) -> Cut:
 
 
 def least_way_along(reaches: Reaches, normals: Array, seen: tuple[Seen, Seen], half: Array) -> Cut:
-    """How far they can come together along directions (k, 3) that stay fixed in the cut's frame:
-    the motion's part along it to first order, and half the greatest second derivative (length).
+    """How far they can come together along directions (k, 3), from A to B, that stay fixed in the
+    cut's frame (length): what each motion by itself does along them, and as much more as the
+    motions before it can turn the direction.
 
     ``half`` (2, k, 3) are half the sides of the cores' boxes.
     """
-    along_a = _along(reaches, normals, seen[0], half[0], reaches.r_a)
-    along_b = _along(reaches, normals, seen[1], half[1], reaches.r_b)
-    first = _sums(reaches.h * along_a, reaches.h * along_b)
-    second = bends(reaches, reaches.h, np.zeros_like(reaches.h))
-    return seen_from(first + 0.5 * second, reaches)
+    k, n = reaches.h.shape
+    on_a, on_b = (
+        _along(reaches, sign * normals, *core, r)
+        for sign, core, r in (
+            (1.0, (seen[0], half[0]), reaches.r_a),
+            (-1.0, (seen[1], half[1]), reaches.r_b),
+        )
+    )
+    cost, turned = np.zeros((k, n + 1)), np.zeros((k, n + 1))
+    for i in range(n):
+        _count(on_a, i, cost[:, : i + 1], turned[:, : i + 1])
+    turned[:] = 0.0
+    for i in range(n - 1, -1, -1):
+        _count(on_b, i, cost[:, i + 1 :], turned[:, i + 1 :])
+    return seen_from(cost, reaches)
 
 
-def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) -> Array:
-    """(k, n): the greatest part along the normals of what a unit of each motion does to a core."""
-    free = ~reaches.axes.any(axis=2)  # of an axis of its own nothing is known
-    levers = np.cross(normals[:, None], reaches.axes)
+class _Along(NamedTuple):
+    """What motions (k, n) do to a piece along a direction, each by itself.
+
+    Attributes
+    ----------
+    first : (k, n) array
+        How far it goes along the direction [length].
+    way : (k, n) array
+        How far it goes at all [length].
+    part : (k, n) array
+        Of a unit of that way, how much can be along the direction.
+    turn : (k, n) array
+        How far it turns the direction, a unit vector.
+    """
+
+    first: Array
+    way: Array
+    part: Array
+    turn: Array
+
+
+def _count(on: _Along, i: int, cost: Array, turned: Array) -> None:
+    """Add motion i as seen from some cuts (k, cuts), from which its direction was ``turned``."""
+    way = on.way[:, i, None]
+    part = np.minimum(1.0, on.part[:, i, None] + turned)
+    cost += np.minimum(part * way, on.first[:, i, None] + turned * way)
+    turned += on.turn[:, i, None]
+
+
+def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) -> _Along:
+    """What each motion does to a core along directions."""
+    axes, turns = reaches.axes, reaches.turns > 0.0
+    free = ~axes.any(axis=2)  # of an axis of its own nothing is known
     arms = seen.centres[:, None] - reaches.origins
-    spread = np.einsum("knj,kj->kn", np.abs(np.einsum("kni,kij->knj", levers, seen.axes)), half)
-    turn = np.abs(np.einsum("kni,kni->kn", levers, arms)) + spread
-    shift = np.abs(np.einsum("kni,ki->kn", reaches.axes, normals))
-    found = np.where(reaches.turns > 0.0, turn, shift) * (1.0 + BOUND_INFLATION)
-    return np.where(free, r, np.minimum(found + BOUND_INFLATION * r, r))
+    cosines = np.einsum("kni,ki->kn", axes, normals)
+    levers = np.cross(normals[:, None], axes)
+    ahead = np.abs(np.einsum("kni,kni->kn", levers, arms)) + _spread(levers, seen, half)
+    inward = cosines[..., None] * axes - normals[:, None]
+    back = np.einsum("kni,kni->kn", inward, arms) + _spread(inward, seen, half)
+    ahead, back = ahead + BOUND_INFLATION * (ahead + r), back + BOUND_INFLATION * (abs(back) + r)
+    # sin(t) ahead + (1 - cos(t)) back grows until its slope is 0
+    t = np.minimum(reaches.h, np.arctan2(ahead, -back))
+    arc = np.sin(t) * ahead + 2.0 * np.sin(0.5 * t) ** 2 * back
+    way = chords(reaches.h, reaches.turns) * r
+    shift = np.minimum(1.0, np.abs(cosines) + BOUND_INFLATION)
+    across = np.sqrt(np.einsum("kni,kni->kn", levers, levers)) + BOUND_INFLATION
+    part = np.where(free, 1.0, np.where(turns, across, shift))
+    first = np.where(free, way, np.where(turns, arc + BOUND_INFLATION * way, shift * way))
+    turn = np.where(turns, chords(reaches.h, reaches.turns) * np.where(free, 1.0, across), 0.0)
+    return _Along(first, way, part, turn)
+
+
+def _spread(directions: Array, seen: Seen, half: Array) -> Array:
+    """(k, n): how far a core reaches from its centre along directions (k, n, 3)."""
+    along = np.abs(np.einsum("kni,kij->knj", directions, seen.axes))
+    found: Array = np.einsum("knj,kj->kn", along, half)
+    return found
+
+
+def chords(h: Array, turns: Array) -> Array:
+    """How far motions by up to h move a point, each by itself, for each unit of the point's
+    distance from the axis: the chord of a turn."""
+    found: Array = np.where(turns > 0.0, 2.0 * np.sin(0.5 * np.minimum(h, np.pi)), h)
+    return found
 
 
 def bends(reaches: Reaches, rates: Array, gains: Array) -> Array:

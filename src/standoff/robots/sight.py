@@ -226,6 +226,40 @@ def closing(middle: Middle, apart: Apart) -> Array:
     return np.where(apart.along, np.minimum(middle.way, along.bound), middle.way)
 
 
+def gains(middle: Middle, apart: Apart | None, numbers: Ints, most: int) -> Array:
+    """(k, most): how much less `closing` is where some motions go half as far [length]; without
+    ``apart``, how much less the way is.
+
+    Where nothing is less (turns by more than π, or what is seen does not move), it is told by the
+    motions' own ways.
+
+    Parameters
+    ----------
+    middle : Middle
+    apart : Apart or None
+    numbers : (k, n) array of int
+        Of each motion of the chains, with which others it is halved: 0 to most - 1, or less than 0.
+    most : int
+    """
+    k, reaches = len(middle.way), middle.reaches
+    every = np.tile(np.arange(k), most + 1)
+    all_ = some_of(middle, every)
+    which = (numbers[every] == np.repeat(np.arange(most + 1), k)[:, None]) & (numbers[every] >= 0)
+    h = np.where(which, 0.5 * all_.reaches.h, all_.reaches.h)
+    all_ = all_._replace(reaches=all_.reaches._replace(h=h))
+    bound = least_way(all_.reaches).bound
+    if apart is not None:
+        all_ = all_._replace(way=bound)
+        bound = closing(all_, Apart._make(each[every] for each in apart))
+    of_number = bound.reshape(most + 1, k)
+    found: Array = (of_number[most] - of_number[:most]).T
+    own = reaches.h * np.minimum(reaches.r_a, reaches.r_b)
+    none = np.flatnonzero(found.max(axis=1, initial=0.0) <= 0.0)
+    for i in range(most):
+        found[none, i] = np.where(numbers[none] == i, own[none], 0.0).sum(axis=1)
+    return found
+
+
 def some_of(middle: Middle, which: Any) -> Middle:
     """Some of the pairs."""
     seen_a, seen_b = (Seen(*(x[which] for x in each)) for each in middle.seen)

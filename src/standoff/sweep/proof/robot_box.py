@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.robots.limits import check_limits
-from standoff.robots.motion_bounds import Reaches
 from standoff.robots.motions import Frames
-from standoff.robots.sight import Middle, Sight, closing, some_of
+from standoff.robots.sight import Apart, Middle, Sight, closing, gains, some_of
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
@@ -22,6 +21,7 @@ from standoff.sweep.subjects.robot import RobotSubject
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 SEEN_TOGETHER = 8192
 """Pairs in cells whose bounding boxes are seen at once: some 10 MB."""
@@ -82,10 +82,10 @@ class RobotBox(ParameterBox):
 
     def moves(self, cells: Cells) -> tuple[Array, Array]:
         n = len(cells.place)
-        _, _, at, _, middle = self._seen(cells)
+        _, frames, at, pairs, middle = self._seen(cells)
         whole, ways = np.zeros(n), np.zeros((n, len(self.parameters)))
         np.maximum.at(whole, at, middle.way)
-        np.maximum.at(ways, at, self._by_column(middle.reaches))
+        np.maximum.at(ways, at, self._gains(middle, self.sight.by_boxes(pairs, frames, at, middle)))
         return whole, ways
 
     def look(self, cells: Cells) -> Looked:
@@ -94,11 +94,13 @@ class RobotBox(ParameterBox):
         boxed = self.sight.by_boxes(pairs, frames, at, middle)
         bound = boxed.lower - closing(middle, boxed)
         upper, distance = np.full(n, np.inf), np.full(n, np.inf)
-        ask = np.flatnonzero(bound - self.clearance < self.doubt)
+        ask = np.flatnonzero(self._worth(pairs, middle, boxed, bound))
         apart = self.sight.ask(pairs[ask], q, frames, at[ask])
         some = some_of(middle, ask)
         bound[ask] = np.maximum(bound[ask], apart.lower - closing(some, apart))
         bound -= self.doubt
+        best = boxed._replace(normals=boxed.normals.copy(), along=boxed.along.copy())
+        best.normals[ask], best.along[ask] = apart.normals, apart.along
         np.minimum.at(distance, at[ask], apart.upper + self.doubt)
         np.minimum.at(upper, at[ask], apart.upper + some.way + self.doubt)
         known, moved = cells.known.copy(), np.zeros(n)
@@ -107,23 +109,40 @@ class RobotBox(ParameterBox):
         open_ = known[at, pairs] < self.clearance
         np.maximum.at(moved, at[open_], middle.way[open_])
         ways = np.zeros((n, len(self.parameters)))
-        # along what moves the pair most that stands in the way most
+        # along what gives back most of the pair that stands in the way most
         worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
-        ways[at[worst]] = self._by_column(some_of(middle, worst).reaches)
+        ways[at[worst]] = self._gains(some_of(middle, worst), Apart._make(x[worst] for x in best))
         # and where the middle is too near, of the pair that is nearest there
         steps = ways.copy()
         nearest = np.flatnonzero(apart.upper + self.doubt == distance[at[ask]])
-        steps[at[ask[nearest]]] = self._by_column(some_of(some, nearest).reaches)
+        steps[at[ask[nearest]]] = self._gains(some_of(some, nearest), None)
         told = Told(lower, upper, distance, ways, steps)
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
         return self.decided(cells, moved, told, asked)._replace(known=known)
 
-    def _by_column(self, reaches: Reaches) -> Array:
-        """How far each parameter moves the two pieces of a pair against each other (k, columns)."""
-        ways = reaches.h * np.minimum(reaches.r_a, reaches.r_b)
-        found = np.zeros((len(ways), len(self.parameters)))
-        columns = np.append(self.columns, -1)[reaches.chain]
-        for k in range(len(self.parameters)):
-            found[:, k] = np.where((columns == k) & (reaches.chain >= 0), ways, 0.0).sum(axis=1)
+    def _worth(self, pairs: Whole, middle: Middle, boxed: Apart, bound: Array) -> Bools:
+        """Is a pair asked? Not where its boxes prove it, nor where a query would hardly prove
+        anything: as far as can be seen the middle is too near for that, and surely too far for a
+        violation of the whole cell."""
+        watched = self.sight.watched
+        a, b = watched.a[pairs], watched.b[pairs]
+        between = middle.seen[1].centres - middle.seen[0].centres
+        flat = watched.cores.planes[a] | watched.cores.planes[b]
+        apart = np.where(
+            flat,
+            np.einsum("ki,ki->k", boxed.normals, between),
+            np.sqrt(np.einsum("ki,ki->k", between, between)),
+        )
+        for piece in (a, b):
+            apart -= watched.cores.radius[piece] + watched.cores.half[piece].min(axis=1)
+        taken = boxed.lower - bound
+        hopeless = (apart - taken < self.clearance) & (boxed.lower + middle.way >= self.clearance)
+        found: Bools = (bound - self.clearance < self.doubt) & ~hopeless
         return found
+
+    def _gains(self, middle: Middle, apart: Apart | None) -> Array:
+        """What halving each parameter gives back of what its pairs can move (k, columns)."""
+        chain = middle.reaches.chain
+        numbers = np.where(chain >= 0, np.append(self.columns, -1)[chain], -1)
+        return gains(middle, apart, numbers, len(self.parameters))
