@@ -94,8 +94,8 @@ class RobotBox(ParameterBox):
         boxed = self.sight.by_boxes(pairs, frames, at, middle)
         bound = boxed.lower - closing(middle, boxed)
         upper, distance = np.full(n, np.inf), np.full(n, np.inf)
-        ask = np.flatnonzero(self._worth(pairs, middle, boxed, bound))
-        apart = self.sight.ask(pairs[ask], q, frames, at[ask])
+        worth = self._worth(pairs, middle, boxed, bound)
+        ask, apart = self._asked(worth, pairs, q, frames, at, boxed)
         some = some_of(middle, ask)
         bound[ask] = np.maximum(bound[ask], apart.lower - closing(some, apart))
         bound -= self.doubt
@@ -120,6 +120,23 @@ class RobotBox(ParameterBox):
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
         return self.decided(cells, moved, told, asked)._replace(known=known)
+
+    def _asked(
+        self, worth: Bools, pairs: Whole, q: Array, frames: Frames, at: Whole, boxed: Apart
+    ) -> tuple[Whole, Apart]:
+        """Which pairs are asked, and what they answer: those that are worth it, and in a cell whose
+        middle is too near, all that may be nearer still."""
+        ask = np.flatnonzero(worth)
+        apart = self.sight.ask(pairs[ask], q, frames, at[ask])
+        nearest = np.full(len(q), np.inf)
+        np.minimum.at(nearest, at[ask], apart.upper + self.doubt)
+        near = nearest[at]
+        more = np.flatnonzero(~worth & (near < self.clearance) & (boxed.lower < near))
+        if not len(more):
+            return ask, apart
+        rest = self.sight.ask(pairs[more], q, frames, at[more])
+        both = (np.concatenate(each) for each in zip(apart, rest, strict=True))
+        return np.concatenate([ask, more]), Apart._make(both)
 
     def _worth(self, pairs: Whole, middle: Middle, boxed: Apart, bound: Array) -> Bools:
         """Is a pair asked? Not where its boxes prove it, nor where a query would hardly prove
