@@ -57,7 +57,7 @@ class Rows:
     def run(self, workers: int = 1) -> float:
         """Seconds."""
 
-        given = self.tables.address, self.tables.which, REST, self.poses
+        given = self.tables.numbers, self.tables.which, REST, self.poses
 
         def part(first: int, end: int) -> None:
             batch.starts(*given, first, end, self.rows, self.done)

@@ -120,13 +120,11 @@ def main() -> None:
     single, singles, wrong = random.astype(np.float32), motion.astype(np.float32), 1.01 * random
     tracker = so.Tracker(a, b)
     rows, done = np.empty((ROWS, K.N_OUT)), np.zeros(ROWS, dtype=np.int64)
-    which = np.zeros(1, dtype=np.int64)
+    table, which = tracker.table.numbers.ravel(), np.zeros(1, dtype=np.int64)
     begin = tracker.start(rest[0], motion[0])
     found = taken(
         {
-            "cold kernel": lambda: batch.starts(
-                tracker.table.address, which, rest, random, 0, ROWS, rows, done
-            ),
+            "cold kernel": lambda: batch.starts(table, which, rest, random, 0, ROWS, rows, done),
             "so.distances": lambda: so.distances(a, b, rest, random),
             "so.distances, two workers": lambda: so.distances(a, b, rest, random, workers=2),
             "tracker.run": lambda: tracker.run(begin, rest, motion[1:]),

@@ -168,7 +168,7 @@ def test_what_many_at_once_pass_no_kernel_refuses(rng: np.random.Generator) -> N
     table = cold_table(so.shapes.sphere(1.0), so.shapes.point())
     rows, done = np.empty((n, K.N_OUT)), np.zeros(n, dtype=np.int64)
     which = np.zeros(1, dtype=np.int64)
-    batch.starts(table.address, which, REST[None], checked.matrices, 0, n, rows, done)
+    batch.starts(table.numbers.ravel(), which, REST[None], checked.matrices, 0, n, rows, done)
     assert (done == K.FINE).all()
 
 

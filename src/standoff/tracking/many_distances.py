@@ -200,7 +200,7 @@ def cold_rows(
     done = np.zeros(len(rows), dtype=np.int64)
 
     def part(first: int, end: int) -> None:
-        batch.starts(tables.address, tables.which, *poses, first, end, rows, done)
+        batch.starts(tables.numbers, tables.which, *poses, first, end, rows, done)
 
     in_parts(part, len(rows), workers)
 

@@ -72,16 +72,15 @@ class AddressTables:
         One of each pair.
     which : (n,) array of int, or (1,) for all rows
         The number of each row's.
-    address : int
-        Of all tables, one behind the other.
+    numbers : (k,) array of int
+        All tables, one behind the other.
     """
 
-    __slots__ = ("_numbers", "address", "tables", "which")
+    __slots__ = ("numbers", "tables", "which")
 
     def __init__(self, tables: Sequence[AddressTable], which: NDArray[np.int64]) -> None:
         self.tables, self.which = tuple(tables), which
-        self._numbers = np.stack([table.numbers for table in tables])
-        self.address: int = self._numbers.ctypes.data
+        self.numbers = np.concatenate([table.numbers.ravel() for table in tables])
 
 
 class Reached:

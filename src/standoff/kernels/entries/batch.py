@@ -9,7 +9,6 @@ from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_
 from standoff.kernels.compiler.decorators import (
     ahead,
     entry,
-    ints_at,
     ints_on_stack,
     kernel,
     pointer,
@@ -273,11 +272,11 @@ def start_smooth(look_a, look_b, pair, options, rows, k):
     return smooth_start(look_a, look_b, pair, inputs_at(motion, False), goal_of(options), out)
 
 
-@entry(INT, INTS, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")
+@entry(INTS, INTS, READ_BLOCKS, READ_BLOCKS, INT, INT, ROWS, WRITE_INTS, work="contact")
 def starts(tables, which, poses_a, poses_b, first, end, outs, done):
     """`start` at rows `first` to `end` - 1 of poses (n, 4, 4), or (1, 4, 4) for all rows.
 
-    `tables` is the address of tables of bodies and options, one behind the other; which (n,), or
+    `tables` are tables of addresses of bodies and options, one behind the other; which (n,), or
     (1,) for all rows, are their numbers. Row k is answered into row k of outs (n, N_OUT); done[k]
     is FINE, or what of it is refused.
     """
@@ -285,8 +284,5 @@ def starts(tables, which, poses_a, poses_b, first, end, outs, done):
     numbers = outs.reshape(outs.size)
     stride_a, stride_b = 0 if len(poses_a) == 1 else 16, 0 if len(poses_b) == 1 else 16
     rows = Rows(pointer(at_a, 0), pointer(at_b, 0), stride_a, stride_b, pointer(numbers, 0), done)
-    last = which.max()  # of an empty array there are no rows
-    pairs = Pairs(
-        ints_at(tables, N_TABLE * (last + 1)), pointer(which, 0), 0 if len(which) == 1 else 1
-    )
+    pairs = Pairs(pointer(tables, 0), pointer(which, 0), 0 if len(which) == 1 else 1)
     start_rows(Batch(pairs, rows), first, end)
