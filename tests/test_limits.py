@@ -9,7 +9,7 @@ ROOT = Path(__file__).parents[1]
 SOURCES = (ROOT / "src", ROOT / "studies" / "src")
 LONGEST_FUNCTION = 60
 """Lines, without the docstring."""
-LONGEST_FILE = 400
+LONGEST_FILE = 800
 FILES = sorted(file for source in SOURCES for file in source.rglob("*.py"))
 
 
