@@ -132,7 +132,8 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         pose_a, pose_b : Pose or what ``Pose.of`` reads
             World poses of the bodies' frames.
         twist_a, twist_b : Twist or what ``Twist.of`` reads, optional
-            Velocities at this instant, (v, omega) in world axes.
+            Velocities at this instant, (v, omega) in world axes. The next frame is predicted from
+            them and from its own.
 
         Returns
         -------
