@@ -1,4 +1,4 @@
-"""Exact, certified minimum distance of curved convex bodies in motion.
+"""Exact, certified distances of curved bodies, convex or not, still or in motion.
 
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,

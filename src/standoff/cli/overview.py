@@ -7,7 +7,7 @@ from inspect import getdoc
 
 USAGE = """usage: standoff COMMAND [OPTIONS]
 
-Exact, certified minimum distance of curved convex bodies in motion."""
+Exact, certified distances of curved bodies, convex or not, still or in motion."""
 
 EXAMPLES = """Examples:
   standoff distance examples/helix.toml --time 2.5
