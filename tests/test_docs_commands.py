@@ -6,15 +6,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+from printed import assert_same_but_roundoff
 from standoff.cli import main
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 QUICK_START = (DOCS / "quick-start.md").read_text("utf-8")
-NUMBER = re.compile(r"-?\d+\.\d+(?:e[-+]\d+)?")
 
 
 def block_after(words: str, language: str) -> str:
@@ -22,17 +21,6 @@ def block_after(words: str, language: str) -> str:
     rest = QUICK_START[QUICK_START.index(words) :]
     (block,) = re.findall(rf"^```{language}\n(.*?)^```$", rest, re.DOTALL | re.MULTILINE)[:1]
     return str(block)
-
-
-def assert_same_but_roundoff(printed: str, promised: str) -> None:
-    """Line by line the same words; numbers to 1e-9, but those that are themselves roundoff."""
-    lines = printed.splitlines()
-    for line in promised.splitlines():
-        found = lines.pop(0)
-        assert NUMBER.sub("#", found).split() == NUMBER.sub("#", line).split()
-        if not line.startswith("worst gap"):
-            numbers = [[float(x) for x in NUMBER.findall(text)] for text in (found, line)]
-            np.testing.assert_allclose(*numbers, rtol=1e-9)
 
 
 def test_demo_prints_what_the_quick_start_says(

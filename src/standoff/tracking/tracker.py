@@ -46,7 +46,7 @@ HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", 
 
 @hides(*HIDDEN)
 class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
-    """Keeps the minimum distance of two convex bodies while they move; of solids `SolidTracker`.
+    """Keeps the minimum distance of two bodies while they move; of solids as a `SolidTracker`.
 
     Parameters
     ----------
