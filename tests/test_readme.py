@@ -62,7 +62,7 @@ def shown() -> list[tuple[str, str, str]]:
 
 @cache
 def run(which: int) -> tuple[dict[str, Any], str]:
-    """The names that a block of Python has at its end, and what it printed, by itself in a clone."""
+    """The names that a block of Python has at its end, and what it printed."""
     names: dict[str, Any] = {}
     with chdir(ROOT), redirect_stdout(StringIO()) as printed:
         exec(compile(shown()[which][1], "README.md", "exec"), names)
