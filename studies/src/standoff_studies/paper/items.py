@@ -97,7 +97,8 @@ ITEMS: tuple[Item, ...] = (
     Item("haptic device and rendering (application)", "partial", "a simulated device",
          "[the virtual coupler](../coupler.md)", ("5",)),
     Item("bodies that are not convex, broad phase (future work)", "partial",
-         "a frame of such bodies in contact takes milliseconds", "[solids](../solids.md), [worlds](../worlds.md)", ()),
+         "a frame of such bodies in contact takes milliseconds",
+         "[solids](../solids.md), [worlds](../worlds.md)", ()),
 )
 # fmt: on
 
