@@ -180,7 +180,7 @@ def test_a_kept_polytope_that_proves_the_depth_costs_nothing():
     hull, _, _ = seeded_hull(BOXES)
     best = minimum_below(BOXES, X)
     work = new_work()
-    found, least = narrow_kept(*BOXES.both, hull, best, HOW, work)
+    found, least, _ = narrow_kept(*BOXES.both, hull, best, HOW, work)
     assert found == best
     assert least == pytest.approx(0.4, abs=1e-13)
     assert work.counts[EVALUATIONS] == 0
@@ -195,7 +195,7 @@ def test_a_kept_polytope_takes_in_the_witness_points_own_difference():
     assert not settles(case.pair, best, bound, DEPTH_PROOF)
     work = new_work()
     work.counts[LIMIT] = 0  # nothing else is tried
-    found, least = narrow_kept(*case.both, hull, best, HOW, work)
+    found, least, _ = narrow_kept(*case.both, hull, best, HOW, work)
     assert found == best
     added = vertices(hull)[before:, :3]
     assert np.abs(added - (0.8, 0.0, 0.0)).sum(axis=1).min() < 1e-9

@@ -209,7 +209,7 @@ def settles(pair, best, least, proof):
 @kernel
 def narrow(pair, pose, hull, best, how, work):
     """(depth, least, stuck): those of `search`, by probes beyond the nearest facets of a polytope
-    about the origin; stuck where no probe makes it grow, though it proves nothing. `how` is
+    about the origin; stuck where none of them makes it grow, though it proves nothing. `how` is
     (tolerance, proof, rivals).
 
     It is no `standoff.best_first`: no facet is split. Each probe makes the one polytope grow, which
@@ -218,18 +218,19 @@ def narrow(pair, pose, hull, best, how, work):
     """
     tolerance, proof, rivals = how
     size = contact_scale(pair)
-    tried, stuck = 0, False
+    tried, ended = 0, False
     for _ in range(MAX_PROBES):
         if exhausted(work):
             break
         at, least = nearest_facet(hull, True)
         if at < 0:
-            stuck = True
+            ended = True
             break
         nu = facet_normal(hull, at)
         proven = settles(pair, best, least, proof)
         # another minimum may still be less by DEPTH_PROOF, away from this one
         if proven and (least >= -best.distance - TOUCHING * size or tried >= rivals):
+            ended = True
             break
         if proven and norm(sub(nu, best.normal)) <= SAME_MINIMUM:
             close_facet(hull, at)
@@ -248,10 +249,10 @@ def narrow(pair, pose, hull, best, how, work):
             best = less_deep(end, best)
             grow_difference(hull, difference(pair, pose, end.place), size)
         if grown == BROKEN:
-            stuck = True
+            ended = True
             break
     least = nearest_facet(hull, False)[1]
-    return best, least, stuck and not settles(pair, best, least, proof)
+    return best, least, ended and not settles(pair, best, least, proof)
 
 
 @kernel
