@@ -186,6 +186,10 @@ COINCIDENT = 1e-140
 # unit vector's part) exceeds FLAT_PART: at most 1.4 times its roundoff is then along the edge.
 FLAT_PART = 0.5
 
+# Unit normals that are opposite up to this (the sine between them): from there on their roundoff
+# hides on which side of them an edge's other normals lie.
+OPPOSITE = 64.0 * EPS
+
 # How strongly a restart's direction is mixed with those before it, a start (dimensionless).
 MIXING = 0.3
 # A length in the place of 0 where a direction is divided by it: what is 0 stays 0.
