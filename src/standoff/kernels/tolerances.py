@@ -8,6 +8,9 @@ EPS = 2.220446049250313e-16
 # Relative pivot of H in the metric of the tangents (dimensionless). Above it the plain factor is
 # the paper's law; below it the pair is nearly parallel and H is decomposed.
 PIVOT = 1e-10
+# Squares of tangents (length² per parameter²) below which an entry of H is kept as it is, and not
+# rounded to eps: 2^-20, of which eps is 2e-10.
+SHORT_TANGENT = 2.0**-20
 # Roundings (eps) that a pivot may have lost, times what the elimination has multiplied them by.
 PIVOT_ROUNDINGS = 64.0
 
