@@ -281,15 +281,20 @@ class Search:
             self.ask(moment)
             if self.touches(moment):
                 break
-            if self._near(moment, tolerance):
+            if moment.upper <= self.clearance + tolerance:
                 near = time
             if span == turn:
                 break
         return near
 
     def _near(self, moment: Moment, tolerance: float) -> bool:
-        """Is the distance proven to be within the tolerance of the clearance?"""
-        return moment.upper <= self.clearance + tolerance
+        """Is the distance proven to be within the tolerance of the clearance, but for what the
+        lower bound is less by where all is well?"""
+        return moment.upper - self.clearance <= 2.0 * (tolerance + self._slack(moment))
+
+    def _slack(self, moment: Moment) -> float:
+        """Of both bodies, length."""
+        return sum(body.report.slack for body in (self.tracker.a, self.tracker.b))
 
     def _stuck(self, before: float) -> Impact:
         """The answer where no time is left between the present instant and a refused one."""
