@@ -9,8 +9,8 @@ EPS = 2.220446049250313e-16
 # the paper's law; below it the pair is nearly parallel and H is decomposed.
 PIVOT = 1e-10
 # Squares of tangents (length² per parameter²) below which an entry of H is kept as it is, and not
-# rounded to eps: 2^-20, of which eps is 2e-10.
-SHORT_TANGENT = 2.0**-20
+# rounded to eps, which is 2e-4 of this: Newton's method loses no step to it.
+SHORT_TANGENT = 2.0**-40
 # Roundings (eps) that a pivot may have lost, times what the elimination has multiplied them by.
 PIVOT_ROUNDINGS = 64.0
 
