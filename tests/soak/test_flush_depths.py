@@ -35,7 +35,7 @@ RIGHT = {"distance": -1e-3, "lower_bound": -1e-3, "upper_bound": -1e-3, "normal"
         ({}, so.Status.GLOBAL, ""),
         ({}, so.Status.LOCAL, "unproven"),
         ({"distance": -1.999, "normal": (0.0, 0.0, -1.0)}, so.Status.LOCAL, "deeper"),
-        ({"distance": -1e-3 + 1e-6}, so.Status.GLOBAL, "not_own"),
+        ({"distance": -1e-3 + 1e-5}, so.Status.GLOBAL, "not_own"),
         ({"distance": 0.1}, so.Status.CONVERGED, "apart"),
         ({"lower_bound": -1e-3 + 1e-9}, so.Status.GLOBAL, "bound"),
         ({"upper_bound": -1e-3 - 1e-9}, so.Status.GLOBAL, "bound"),

@@ -294,7 +294,7 @@ class Search:
 
     def _slack(self, moment: Moment) -> float:
         """Of both bodies, length."""
-        return sum(body.report.slack for body in (self.tracker.a, self.tracker.b))
+        return float(sum(body.report.slack for body in (self.tracker.a, self.tracker.b)))
 
     def _stuck(self, before: float) -> Impact:
         """The answer where no time is left between the present instant and a refused one."""

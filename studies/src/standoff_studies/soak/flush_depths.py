@@ -87,7 +87,7 @@ def _polytope(name: str, points: Array, ball: float, body: so.Body) -> Shape:
 def _box(rng: np.random.Generator, ball: float) -> Shape:
     half = 0.5 * np.exp(rng.uniform(-1.5, 0.0, 3))
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
-    body = so.shapes.box(*(2.0 * (half + ball)), rounding=ball)
+    body = so.shapes.box(tuple(2.0 * (half + ball)), rounding=ball)
     return _polytope("box", corners, ball, body)
 
 
@@ -162,7 +162,7 @@ def _pose(rng: np.random.Generator, a: Shape, b: Shape) -> tuple[Array, Array]:
     planar = a.name == "planar"
     up = np.array([0.0, 0.0, 1.0])
     n, m = (shape.normals[int(rng.integers(len(shape.normals)))] for shape in (a, b))
-    frames = []
+    frames: list[Array] = []
     for shape, normal in ((a, n), (b, m)):
         ways = shape.edges[np.abs(shape.edges @ normal) < SAME]
         way = up if planar else _across(rng, normal)
@@ -232,7 +232,7 @@ def depths(a: Shape, b: Shape, pose: Poses, n: Array) -> Array:
 
 class DepthVerdict(NamedTuple):
     """Counts: poses; of those that overlap by more than the tolerance the depths that exceed the
-    least by more than a thousandth, and those that are not the depth along their normal; statuses
+    least by more than a thousandth, and those that are not so near the one along their normal; statuses
     that say apart, though the normal does not part the bodies; bounds on the wrong side of the
     least depth; answers of other routes that are not the same; depths not proven the least."""
 
@@ -277,7 +277,7 @@ def judged(a: Shape, b: Shape, pose: Poses, told: Any) -> Array:
         np.ones(len(size)),
         within,
         within & (-told.distance > least * (1.0 + THOUSANDTH) + TOLERANCE * size),
-        within & (np.abs(own + told.distance) > TOLERANCE * size),
+        within & (np.abs(own + told.distance) > THOUSANDTH * own + TOLERANCE * size),
         (own > 2.0 * TOLERANCE * size) & ~penetrating,
         bound,
         np.zeros(len(size)),
