@@ -232,9 +232,9 @@ def depths(a: Shape, b: Shape, pose: Poses, n: Array) -> Array:
 
 class DepthVerdict(NamedTuple):
     """Counts: poses; of those that overlap by more than the tolerance the depths that exceed the
-    least by more than a thousandth, and those that are not so near the one along their normal; statuses
-    that say apart, though the normal does not part the bodies; bounds on the wrong side of the
-    least depth; answers of other routes that are not the same; depths not proven the least."""
+    least by more than a thousandth, and those that are not so near the one along their normal;
+    statuses that say apart, though the normal does not part the bodies; bounds on the wrong side of
+    the least depth; answers of other routes that are not the same; depths not proven the least."""
 
     poses: int = 0
     overlaps: int = 0
