@@ -47,7 +47,7 @@ def minimum_below(case, n):
 
 def seeded_hull(case):
     hull = hull_of(np.zeros((0, 3)))
-    solid, way = seed_hull(*case.both, hull, contact_scale(case.pair))
+    solid, way = seed_hull(*case.both, hull, contact_scale(case.pair), False)
     return hull, solid, way
 
 

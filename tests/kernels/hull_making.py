@@ -30,7 +30,7 @@ def seeded(points, planar=0, size=SIZE):
     return hull, *begin_hull(hull, len(points), size)
 
 
-def hull_of(points, planar=0):
+def hull_of(points, planar=0, exact=False):
     """A hull without facets, with points in its arrays."""
     hull = Hull(
         np.zeros(N_SIZES, dtype=np.int64),
@@ -40,7 +40,7 @@ def hull_of(points, planar=0):
         np.zeros(MAX_FACETS, dtype=np.int64),
         np.zeros(ALL_RIMS, dtype=np.int64),
     )
-    empty_hull(hull, planar)
+    empty_hull(hull, planar, exact)
     for k, x in enumerate(np.asarray(points, dtype=float)):
         put_vertex(hull.points, k, alone(x))
     return hull

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hull_making import SIZE, alone, assert_closed, hull_of, seeded
+from hull_making import SIZE, alone, assert_closed, hull_of, rows, seeded
 from scipy.spatial import ConvexHull
 
 from draws import draws
@@ -19,7 +19,9 @@ from standoff.kernels.depth.difference_hull import (
     NO_GAIN,
     POINTS,
     add_facet,
+    begin_hull,
     close_facet,
+    exact_height,
     facet_normal,
     farthest_from,
     grow,
@@ -143,3 +145,23 @@ def test_the_farthest_from_a_point_a_line_and_a_plane():
     assert farthest_from(points, 4, 1, zero, zero, zero) == (1, 5.0)
     assert farthest_from(points, 4, 2, zero, x, zero) == (2, 3.0)
     assert farthest_from(points, 4, 3, zero, x, y) == (3, 2.0)
+
+
+@pytest.mark.parametrize("power", [-16, -14, -12, -11, -10, -9, -8, -6])
+def test_an_exact_hull_of_nearly_flush_points_stays_convex(power, rng):
+    """A cube's corners and points on its sides and edges, each off by a little: the hull loses no
+    more of the cube than that, whatever needles it has, and no point is above a facet of it."""
+    off = 10.0**power
+    grid = np.array([x for x in product((-1.0, -0.3, 0.2, 1.0), repeat=3) if 1.0 in np.abs(x)])
+    points = rng.permutation(grid + off * rng.uniform(-1.0, 1.0, grid.shape))
+    hull = hull_of(points[:8], exact=True)
+    solid, _ = begin_hull(hull, 8, SIZE)
+    assert solid
+    for x in points[8:]:
+        assert grow(hull, alone(x), SIZE) != BROKEN
+    assert_closed(hull)
+    at, corners, _ = rows(hull)
+    for i, j, k in corners:
+        heights = [exact_height(*(tuple(at[m]) for m in (i, j, k)), tuple(x)) for x in points]
+        assert max(heights) <= 1e-14
+    assert 1.0 - 2.0 * off - 2e-14 <= nearest_facet(hull, False)[1] <= 1.0 + 2.0 * off

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import standoff as so
 from draws import draws
@@ -284,3 +285,28 @@ def test_motion(name, twists, rng):
     tally = track(name, level, 30, rng, twists=twists)
     assert not tally.failures
     assert max(tally.evaluations) <= MOST_IN_PENETRATION
+
+
+@pytest.mark.parametrize("power", [-4, -7, -8])
+def test_plates_that_are_hardly_thick(power, rng):
+    """Hulls of points of a plane but for a little: as far from a box as the plane polygon, and
+    nothing is said to overlap without a proof."""
+    box, asked = so.shapes.box(0.5, 0.6, 0.7), 0
+    for _ in range(draws(20)):
+        points = rng.normal(size=(6, 3)) * (1.0, 1.0, 0.0)
+        turns = Rotation.random(20, random_state=rng).as_matrix()
+        shifts = 2.0 * rng.normal(size=(20, 3))
+        off = 10.0**power * rng.normal(size=6)
+        try:
+            plate = so.Body.from_points(points + np.outer(off, (0.0, 0.0, 1.0)))
+        except so.BodyError:
+            continue
+        found = so.distances(plate, box, HOME, (turns, shifts))
+        truth = so.distances(so.shapes.polygon(points), box, HOME, (turns, shifts))
+        near = np.abs(off).max() + 1e-9
+        apart = truth.distance > near
+        asked += np.count_nonzero(apart)
+        assert np.all(np.abs(found.distance - truth.distance)[apart] <= near)
+        assert found.certified[apart].all()
+        assert not np.any((found.distance < 0.0) & (found.upper_bound > 0.0))
+    assert asked > 0

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_pairs import APART, pairs
+from scipy.spatial.transform import Rotation
 
 import standoff as so
 from draws import draws
@@ -148,6 +149,35 @@ def test_shapes_of_scaled_lengths_are_scaled_shapes(scale):
         two = so.distance(s.lens(1, 0.45), expected, so.Pose.identity(), pose)
         assert one.distance / k == pytest.approx(two.distance, abs=1e-14)
         np.testing.assert_allclose(one.point_b / k, two.point_b, atol=1e-12)
+
+
+def scaled_bodies(k):
+    """Bodies of a size of about k."""
+    s, points = so.shapes, np.random.default_rng(7).normal(size=(9, 3)) * 0.4
+    return (
+        s.box(k, 0.7 * k, 0.5 * k),
+        s.sphere(0.4 * k),
+        s.ellipsoid(0.3 * k, 0.5 * k, 0.4 * k),
+        s.capsule(0.2 * k, 0.6 * k),
+        s.polytope(points * k),
+        s.polytope(points * k, rounding=0.1 * k),
+        s.lens(0.8 * k, 0.3 * k),
+    )
+
+
+@pytest.mark.parametrize("power", [-30, -26, -13, 13, 30])
+def test_a_power_of_two_changes_no_status(power, rng):
+    """Apart and in penetration; beyond, the tolerances of trimming are no longer small lengths."""
+    turns = Rotation.random(30, random_state=rng).as_matrix()
+    shifts = rng.normal(size=(30, 3)) * 0.7
+    k = 2.0**power
+    one, other = scaled_bodies(1.0), scaled_bodies(k)
+    for i, a in enumerate(one):
+        for b, its, own in zip(one[i:], other[i:], [other[i]] * len(one), strict=False):
+            first = so.distances(a, b, np.eye(4), (turns, shifts))
+            second = so.distances(own, its, np.eye(4), (turns, k * shifts))
+            assert list(first.status) == list(second.status)
+            np.testing.assert_allclose(second.distance / k, first.distance, rtol=0.0, atol=1e-13)
 
 
 def seen_from(frame, path, t):

@@ -383,3 +383,20 @@ def test_a_path_that_ends_before_is_refused() -> None:
     path = PoseSamples([0.0, 1.0], [at(3.0, 0.0, 0.0), at(4.0, 0.0, 0.0)])
     with pytest.raises(ValueError, match=r"= 1\.5, but a path ends at 1\.0"):
         so.time_of_impact(body, body, REST, path, 1.5)
+
+
+@pytest.mark.parametrize(
+    ("upper", "status"), [(1e-9, "GRAZING"), (0.3, "UNDECIDED"), (math.inf, "UNDECIDED")]
+)
+def test_bodies_graze_only_where_they_are_proven_near(monkeypatch, upper, status) -> None:
+    """Of balls that touch, with answers that prove no more than the bounds that are given."""
+    ask = Moment.ask
+
+    def asked(moment, tracker, before):
+        ask(moment, tracker, before)
+        moment.lower, moment.upper = -1.0, upper
+
+    monkeypatch.setattr(Moment, "ask", asked)
+    ball = so.shapes.sphere(0.5)
+    found = so.time_of_impact(ball, ball, REST, Fixed(at(1.0, 0.0, 0.0)), 1.0)
+    assert found.status.name == status

@@ -252,15 +252,17 @@ class Search:
         near = self._probe(tolerance)
         if self.latest < math.inf:
             return self._answer(ImpactStatus.IMPACT, self.latest)
+        if not near < math.inf:  # whether they are so near at all is not proven
+            return self._answer(ImpactStatus.UNDECIDED, self.latest)
         return self._answer(ImpactStatus.GRAZING, near)
 
     def _probe(self, tolerance: float) -> float:
         """Look soon after the present instant for one proven to be in contact.
 
-        Returns the last instant proven to be within the tolerance of the clearance.
+        Returns the last instant proven to be within the tolerance of the clearance; inf for none.
         """
         now, rate = self.now, self.now.rate
-        near = now.time
+        near = now.time if self._near(now, tolerance) else math.inf
         if not rate < 0.0:
             return near
         bend = self.paces[False].bend
@@ -284,6 +286,15 @@ class Search:
             if span == turn:
                 break
         return near
+
+    def _near(self, moment: Moment, tolerance: float) -> bool:
+        """Is the distance proven to be within the tolerance of the clearance, but for what the
+        lower bound is less by where all is well?"""
+        return moment.upper - self.clearance <= 2.0 * (tolerance + self._slack(moment))
+
+    def _slack(self, moment: Moment) -> float:
+        """Of both bodies, length."""
+        return float(sum(body.report.slack for body in (self.tracker.a, self.tracker.b)))
 
     def _stuck(self, before: float) -> Impact:
         """The answer where no time is left between the present instant and a refused one."""

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.impact.answer import Impact, ImpactStatus
 from standoff.impact.moment import Box, Moment
 from standoff.impact.search import Search
 from standoff.motion.vectors import cross
@@ -117,14 +116,9 @@ class SolidSearch(Search):
         way = self.chords.speed * (last.time - first.time)
         return way < self.gap(first, balls) + self.gap(last, balls)
 
-    def _at_clearance(self, start: float, tolerance: float) -> Impact | None:
-        found = super()._at_clearance(start, tolerance)
-        if found is None or found.status is not ImpactStatus.GRAZING:
-            return found
-        answer: Any = self.now.proximity
-        if self.now.upper - self.clearance <= 2.0 * (tolerance + answer.slack):
-            return found
-        return self._answer(ImpactStatus.UNDECIDED, self.latest)  # the answer is not proven
+    def _slack(self, moment: Moment) -> float:
+        answer: Any = moment.proximity
+        return float(answer.slack)
 
 
 def solid_search(

@@ -8,6 +8,9 @@ EPS = 2.220446049250313e-16
 # Relative pivot of H in the metric of the tangents (dimensionless). Above it the plain factor is
 # the paper's law; below it the pair is nearly parallel and H is decomposed.
 PIVOT = 1e-10
+# Squares of tangents (length² per parameter²) below which an entry of H is kept as it is, and not
+# rounded to eps, which is 2e-4 of this: Newton's method loses no step to it.
+SHORT_TANGENT = 2.0**-40
 # Roundings (eps) that a pivot may have lost, times what the elimination has multiplied them by.
 PIVOT_ROUNDINGS = 64.0
 
@@ -185,6 +188,10 @@ COINCIDENT = 1e-140
 # A vector square to an edge is made a unit vector where the square of its length (dimensionless: a
 # unit vector's part) exceeds FLAT_PART: at most 1.4 times its roundoff is then along the edge.
 FLAT_PART = 0.5
+
+# Unit normals that are opposite up to this (the sine between them): from there on their roundoff
+# hides on which side of them an edge's other normals lie.
+OPPOSITE = 64.0 * EPS
 
 # How strongly a restart's direction is mixed with those before it, a start (dimensionless).
 MIXING = 0.3

@@ -6,6 +6,13 @@ triangles, counter-clockwise seen from outside; a facet that goes is replaced by
 planar bodies the polytope is a prism over their difference, long enough that its ends bound no
 depth.
 
+A facet is seen by a point that is above it, or in its plane to COPLANAR. That is no longer one
+connected part of the surface where facets differ by about as much, as those of flush faces do, and
+then the new facets may fold over. A polytope that is EXACT has no such width: which side of a plane
+a point is on is found with twice the digits, so that the surface stays the hull of its points,
+needles included, and their planes keep all their digits. It takes ten times as long, so it is made
+only where the other one proves nothing (`search`).
+
 Any closed surface of triangles about the origin bounds the depth, convex or not
 (docs/penetration.md), so roundoff in which facets a point sees costs tightness only.
 
@@ -16,6 +23,13 @@ vertex moves with them and stays inside A - B (`kept_polytope`).
 from math import inf
 from typing import Any, NamedTuple
 
+from standoff.kernels.algebra.doubled import (
+    doubled,
+    doubled_cross,
+    doubled_dot,
+    nearest_of_each,
+    step_between,
+)
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import cross, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared
@@ -34,8 +48,8 @@ POINT_REALS = 9
 NORMAL, OFFSET, CLOSED = 0, 3, 4
 FACET_REALS = 5
 # Sizes of a polytope, in one array.
-POINTS, FACETS, PLANAR = range(3)
-N_SIZES = 3
+POINTS, FACETS, PLANAR, EXACT = range(4)
+N_SIZES = 4
 # Sizes of the arrays that a hull is made in.
 ALL_POINTS, ALL_FACETS = POINT_REALS * MAX_POINTS, FACET_REALS * MAX_FACETS
 ALL_CORNERS, ALL_RIMS = 3 * MAX_FACETS, 2 * MAX_FACETS
@@ -63,10 +77,17 @@ class Vertex(NamedTuple):
 
 
 @kernel
-def empty_hull(hull, planar):
+def empty_hull(hull, planar, exact=False):
     """A polytope without points, in arrays that may hold anything."""
     sizes = hull.sizes
-    sizes[POINTS], sizes[FACETS], sizes[PLANAR] = 0, 0, 1 if planar else 0
+    sizes[POINTS], sizes[FACETS] = 0, 0
+    sizes[PLANAR], sizes[EXACT] = 1 if planar else 0, 1 if exact else 0
+
+
+@kernel
+def coplanar(hull, size):
+    """How far above a facet a point counts as in its plane."""
+    return FACET_ROUNDINGS * EPS * size if hull.sizes[EXACT] else COPLANAR * size
 
 
 @kernel
@@ -95,30 +116,83 @@ def vertex_of(points, k):
 
 
 @kernel
-def add_facet(hull, i, j, k, size):
-    """Append the facet of three points. False where they are in line, or no room is left."""
-    sizes, points, corners, facets = hull.sizes, hull.points, hull.corners, hull.facets
-    m = sizes[FACETS]
-    a, b, c = point_of(points, i), point_of(points, j), point_of(points, k)
+def leaning(a, along, across, square, length):
+    """How far the foot of the origin on a facet's plane is from the facet, over its height."""
+    return abs(dot(a, cross(across, along))) / square + abs(dot(a, along)) / length
+
+
+@kernel
+def longest_side(a, b, c):
+    """(the vector along it, the square of its length)."""
     along, other, third = sub(b, a), sub(c, b), sub(a, c)
-    across = cross(along, sub(c, a))  # the normal, twice the area long
-    square, length = dot(across, across), dot(along, along)
+    length = dot(along, along)
     if dot(other, other) > length:
         along, length = other, dot(other, other)
     if dot(third, third) > length:
         along, length = third, dot(third, third)
+    return along, length
+
+
+@kernel
+def plane_of(a, b, c, size):
+    """(are the points not in line, unit normal, the plane's distance from the origin less its
+    roundoff)."""
+    across = cross(sub(b, a), sub(c, a))  # the normal, twice the area long
+    square = dot(across, across)
+    along, length = longest_side(a, b, c)
     thin = EPS * size
-    if m >= MAX_FACETS or not square > thin * thin * length:
-        return False
+    if not square > thin * thin * length:
+        return False, across, 0.0
     normal = scale(1.0 / sqrt(square), across)
     # roundoff turns the plane about its longest side by eps size / height, and about the height
     # less
-    lean = abs(dot(a, cross(across, along))) / square + abs(dot(a, along)) / length
+    lean = leaning(a, along, across, square, length)
     noise = FACET_ROUNDINGS * EPS * size * (1.0 + lean)
+    return True, normal, dot(normal, a) - noise
+
+
+@shared
+def exact_plane(a, b, c, size):
+    """`plane_of` with twice the digits: what is left is the roundoff of the points themselves,
+    which moves the hull by no more than it moves them."""
+    full = doubled_cross(step_between(a, b), step_between(a, c))
+    across = nearest_of_each(full)
+    square = dot(across, across)
+    along, length = longest_side(a, b, c)
+    thin = EPS * EPS * size
+    if not square > thin * thin * length:
+        return False, across, 0.0
+    root = sqrt(square)
+    lean = EPS * leaning(a, along, across, square, length)
+    noise = FACET_ROUNDINGS * EPS * size * (1.0 + lean)
+    return True, scale(1.0 / root, across), doubled_dot(full, doubled(a)) / root - noise
+
+
+@shared
+def exact_height(a, b, c, x):
+    """How far a point is above the plane of a facet's three."""
+    full = doubled_cross(step_between(a, b), step_between(a, c))
+    return doubled_dot(full, step_between(a, x)) / norm(nearest_of_each(full))
+
+
+@kernel
+def add_facet(hull, i, j, k, size):
+    """Append the facet of three points. False where they are in line, or no room is left."""
+    sizes, points, corners, facets = hull.sizes, hull.points, hull.corners, hull.facets
+    m = sizes[FACETS]
+    if m >= MAX_FACETS:
+        return False
+    a, b, c = point_of(points, i), point_of(points, j), point_of(points, k)
+    if sizes[EXACT]:
+        wide, normal, offset = exact_plane(a, b, c, size)
+    else:
+        wide, normal, offset = plane_of(a, b, c, size)
+    if not wide:
+        return False
     corners[3 * m], corners[3 * m + 1], corners[3 * m + 2] = i, j, k
     o = FACET_REALS * m
     facets[o], facets[o + 1], facets[o + 2] = normal
-    facets[o + OFFSET] = dot(normal, a) - noise
+    facets[o + OFFSET] = offset
     facets[o + CLOSED] = 0.0
     sizes[FACETS] = m + 1
     return True
@@ -170,20 +244,30 @@ def horizon(corners, seen, n_seen, rim):
 
 
 @kernel
+def height_over(hull, m, x):
+    """How far a point is above a facet."""
+    points, corners, facets = hull.points, hull.corners, hull.facets
+    a = point_of(points, corners[3 * m])
+    if hull.sizes[EXACT]:
+        b, c = point_of(points, corners[3 * m + 1]), point_of(points, corners[3 * m + 2])
+        return exact_height(a, b, c, x)
+    o = FACET_REALS * m
+    return dot((facets[o], facets[o + 1], facets[o + 2]), sub(x, a))
+
+
+@kernel
 def look_from(hull, x, size):
     """(how many facets a point sees, is it above any); they are listed in `hull.seen`."""
-    sizes, points, corners, facets, seen, _ = hull
     n_seen, above = 0, False
-    for m in range(sizes[FACETS]):
-        o = FACET_REALS * m
-        height = dot(
-            (facets[o], facets[o + 1], facets[o + 2]), sub(x, point_of(points, corners[3 * m]))
-        )
-        # a coplanar facet goes too: no new one is then in line with its edges
-        if height > -COPLANAR * size:
-            seen[n_seen] = m
+    width = coplanar(hull, size)
+    # a coplanar facet goes too: no new one is then in line with its edges
+    least = 0.0 if hull.sizes[EXACT] else -width
+    for m in range(hull.sizes[FACETS]):
+        height = height_over(hull, m, x)
+        if height > least:
+            hull.seen[n_seen] = m
             n_seen += 1
-            above = above or height > COPLANAR * size
+            above = above or height > width
     return n_seen, above
 
 
@@ -259,7 +343,7 @@ def begin_hull(hull, n, size):
     sizes, points = hull.sizes, hull.points
     sizes[POINTS], sizes[FACETS] = n, 0
     origin = point_of(points, 0)
-    tiny = COPLANAR * size
+    tiny = coplanar(hull, size)
     i, far = farthest_from(points, n, 1, origin, origin, origin)
     a = point_of(points, i)
     j, far = farthest_from(points, n, 1, a, origin, origin)

@@ -187,7 +187,7 @@ def cores_meet(pair, pose, margin, work):
         ints_on_stack(MAX_FACETS),
         ints_on_stack(ALL_RIMS),
     )
-    solid, _ = seed_hull(pair, pose, hull, contact_scale(pair))
+    solid, _ = seed_hull(pair, pose, hull, contact_scale(pair), False)
     return solid and grows_about(pair, pose, hull, margin, work)
 
 

@@ -126,7 +126,7 @@ def alone(pair, pose, best, work):
         known = alone_in(pair, pose, hull, best, work)
         if known != NOT_KNOWN:
             return known
-    if not seed_hull(pair, pose, hull, size)[0]:
+    if not seed_hull(pair, pose, hull, size, False)[0]:
         return NOT_KNOWN
     grow_difference(hull, difference(pair, pose, best.place), size)
     return alone_in(pair, pose, hull, best, work)

@@ -17,6 +17,7 @@ from standoff.kernels.depth.difference_hull import (
     ALL_POINTS,
     ALL_RIMS,
     BROKEN,
+    EXACT,
     GREW,
     MAX_FACETS,
     N_SIZES,
@@ -96,10 +97,10 @@ def seed(pair, pose, points, n, way, size):
 
 
 @shared
-def seed_hull(pair, pose, hull, size):
+def seed_hull(pair, pose, hull, size, exact):
     """(solid, direction): facets over differences of samples; see `begin_hull`."""
     planar = is_planar(pair)
-    empty_hull(hull, planar)
+    empty_hull(hull, planar, exact)
     points = hull.points
     n = 0
     for k in range(8 if planar else SEEDS):
@@ -129,7 +130,7 @@ def overlap_shown(pair, pose):
         ints_on_stack(ALL_RIMS),
     )
     size = contact_scale(pair)
-    solid, n = seed_hull(pair, pose, hull, size)
+    solid, n = seed_hull(pair, pose, hull, size, False)
     if not solid:
         return False, n, 0.0
     at, least = nearest_facet(hull, True)
@@ -144,6 +145,19 @@ def difference(pair, pose, place):
     jet_a, jet_b = pair_jets(pair, pose, place)
     of_b = rotate_back(pose.R, sub(jet_b[0], pose.p))
     return Vertex(sub(jet_a[0], jet_b[0]), jet_a[0], of_b)
+
+
+@kernel
+def taken_beyond(pair, pose, hull, nu, probe, size):
+    """`grow_difference` by a probe beyond a facet with the normal nu. An exact polytope also takes
+    in the samples farthest along nu, among which are a polytope's own vertices: a probe may end
+    beside one by what counts as no slope.
+    """
+    grown = grow_difference(hull, difference(pair, pose, probe.place), size)
+    if hull.sizes[EXACT] == 0:
+        return grown
+    farthest = difference(pair, pose, begin_along(pair, pose, nu))
+    return min(grown, grow_difference(hull, farthest, size))
 
 
 @kernel
@@ -194,8 +208,9 @@ def settles(pair, best, least, proof):
 
 @kernel
 def narrow(pair, pose, hull, best, how, work):
-    """(depth, least) of `search`, by probes beyond the nearest facets of a polytope about the
-    origin. `how` is (tolerance, proof, rivals).
+    """(depth, least, stuck): those of `search`, by probes beyond the nearest facets of a polytope
+    about the origin; stuck where none of them makes it grow, though it proves nothing. `how` is
+    (tolerance, proof, rivals).
 
     It is no `standoff.best_first`: no facet is split. Each probe makes the one polytope grow, which
     takes away facets and makes others, and the least of those that are left is found in passing;
@@ -203,17 +218,19 @@ def narrow(pair, pose, hull, best, how, work):
     """
     tolerance, proof, rivals = how
     size = contact_scale(pair)
-    tried = 0
+    tried, ended = 0, False
     for _ in range(MAX_PROBES):
         if exhausted(work):
             break
         at, least = nearest_facet(hull, True)
         if at < 0:
+            ended = True
             break
         nu = facet_normal(hull, at)
         proven = settles(pair, best, least, proof)
         # another minimum may still be less by DEPTH_PROOF, away from this one
         if proven and (least >= -best.distance - TOUCHING * size or tried >= rivals):
+            ended = True
             break
         if proven and norm(sub(nu, best.normal)) <= SAME_MINIMUM:
             close_facet(hull, at)
@@ -224,7 +241,7 @@ def narrow(pair, pose, hull, best, how, work):
         if not apart:
             close_facet(hull, at)
             continue
-        grown = grow_difference(hull, difference(pair, pose, probe.place), size)
+        grown = taken_beyond(pair, pose, hull, nu, probe, size)
         if grown != GREW:
             close_facet(hull, at)
         if proven or not best.found or probe.distance > best.distance + TOUCHING * size:
@@ -232,8 +249,10 @@ def narrow(pair, pose, hull, best, how, work):
             best = less_deep(end, best)
             grow_difference(hull, difference(pair, pose, end.place), size)
         if grown == BROKEN:
+            ended = True
             break
-    return best, nearest_facet(hull, False)[1]
+    least = nearest_facet(hull, False)[1]
+    return best, least, ended and not settles(pair, best, least, proof)
 
 
 @kernel
@@ -257,7 +276,8 @@ def search(pair, pose, best, tolerance, proof, rivals, work):
     ends uncertified still gives a depth that parts the bodies: its bound.
 
     In a frame that is KEEPING its polytope the one of the frame before, moved with the bodies, is
-    tried first. If that proves no depth, the polytope is built again.
+    tried first. If that proves no depth, the polytope is built again, and an EXACT one where that
+    one got stuck too.
     """
     hull = Hull(
         ints_on_stack(N_SIZES),
@@ -272,16 +292,19 @@ def search(pair, pose, best, tolerance, proof, rivals, work):
     keeping = work.counts[KEEPING] != 0
     least, settled = -inf, False
     if keeping and recall(hull, pose, is_planar(pair), work.last_polytope, size):
-        best, least = narrow_kept(pair, pose, hull, best, how, work)
+        best, least, _ = narrow_kept(pair, pose, hull, best, how, work)
         settled = settles(pair, best, least, proof) or (exhausted(work) and least > 0.0)
-    if not settled:
+    stuck = not settled
+    for exact in (False, True):
+        if not stuck:
+            break
         work.counts[SEARCHES] += 1
-        solid, way = seed_hull(pair, pose, hull, size)
+        solid, way = seed_hull(pair, pose, hull, size, exact)
         if not solid:
             return search_flat(pair, pose, way, best, tolerance, work)
         if best.found:
             grow_difference(hull, difference(pair, pose, best.place), size)
-        best, least = narrow(pair, pose, hull, best, how, work)
+        best, least, stuck = narrow(pair, pose, hull, best, how, work)
     if keeping and least > 0.0:
         keep(hull, work.polytope)
         work.counts[KEPT] = 1

@@ -112,9 +112,11 @@ def conclude(pair, pose, at, least, tolerance, work):
     span = pair_span(pair, pose.p, abs(d))
     allowed = min(tolerance, BLUR) * span + pair_slack(pair) + min(blur, BLUR * span)
     if d - bound > allowed or norm(axpy(-d, n, gap)) > ALIGNED * span:
-        # not at rest: all that is proven is the bound, or the distance between the points
-        d = bound if bound <= 0.0 else upper
-        found = found and bound <= 0.0 and not exhausted(work)
+        # not at rest: all that is proven is the bound, or the distance between the points; and no
+        # overlap but by the search
+        shown = bound <= 0.0 and (min(upper, -least) <= 0.0 or not found)
+        d = bound if shown else upper
+        found = found and shown and not exhausted(work)
     if least >= 0.0:
         upper = min(upper, -least)
     if upper > 0.0 and d <= 0.0 and exhausted(work):

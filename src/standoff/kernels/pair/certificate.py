@@ -33,7 +33,7 @@ from standoff.kernels.body.features import (
 )
 from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.pair.switching import apex_normal, end_direction, steepest_in_sector
-from standoff.kernels.tolerances import BOUND_ROUNDINGS, COINCIDENT, EPS, FLAT_PART, FRONT
+from standoff.kernels.tolerances import BOUND_ROUNDINGS, COINCIDENT, EPS, FLAT_PART, FRONT, OPPOSITE
 from standoff.kernels.values import Vector, side_of
 
 # What normals a cone has: one, those between two faces', all square to an edge without faces, or a
@@ -137,8 +137,11 @@ def nearest_on_arc(cone, n):
             return flat, 0.0
     else:
         # too far along the edge for `between`, which does not know the tangent?
-        far = dot(n, tangent) ** 2 > dot(opening, opening) >= EPS
-        if far and turns_within(flat, axis, a, b):
+        square = dot(opening, opening)
+        far = dot(n, tangent) ** 2 > square >= EPS
+        # or the rim of a plate so thin that it takes the faces' normals for one direction?
+        thin = EPS > square > OPPOSITE * OPPOSITE and dot(a, b) < 0.0
+        if (far or thin) and turns_within(flat, axis, a, b):
             return flat, 0.0
     return between(n, a, b), noise
 

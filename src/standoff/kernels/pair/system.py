@@ -10,6 +10,7 @@ F = [f_u f_v], G = [h_r h_s], dR = x_f - x_h. S = diag(1, 1, -1, -1).
 
 from standoff.kernels.algebra.vectors import active, add, cross, dot, scale, sub
 from standoff.kernels.compiler.decorators import small
+from standoff.kernels.tolerances import SHORT_TANGENT
 
 
 @small
@@ -32,6 +33,18 @@ def energy(jet_a, jet_b):
 
 
 @small
+def diagonal(x, tangent):
+    """An entry of the diagonal of H or J; 1 where the parameter is masked, its tangent zero.
+
+    The sum with that 1 rounds the entry, by some eps of it. Where the tangent is short, that would
+    be more than it has to say.
+    """
+    if 0.0 < dot(tangent, tangent) < SHORT_TANGENT:
+        return x
+    return x + 1.0 - active(tangent)
+
+
+@small
 def hessian(jet_a, jet_b):
     """H = S M, the Hessian of E, with M of Eq. (9).
 
@@ -42,16 +55,16 @@ def hessian(jet_a, jet_b):
     fu, fv, fuu, fuv, fvv = jet_a[1], jet_a[2], jet_a[3], jet_a[4], jet_a[5]
     hr, hs, hrr, hrs, hss = jet_b[1], jet_b[2], jet_b[3], jet_b[4], jet_b[5]
     return (
-        dot(fu, fu) + dot(dR, fuu) + 1.0 - active(fu),
+        diagonal(dot(fu, fu) + dot(dR, fuu), fu),
         dot(fu, fv) + dot(dR, fuv),
         -dot(fu, hr),
         -dot(fu, hs),
-        dot(fv, fv) + dot(dR, fvv) + 1.0 - active(fv),
+        diagonal(dot(fv, fv) + dot(dR, fvv), fv),
         -dot(fv, hr),
         -dot(fv, hs),
-        dot(hr, hr) - dot(dR, hrr) + 1.0 - active(hr),
+        diagonal(dot(hr, hr) - dot(dR, hrr), hr),
         dot(hr, hs) - dot(dR, hrs),
-        dot(hs, hs) - dot(dR, hss) + 1.0 - active(hs),
+        diagonal(dot(hs, hs) - dot(dR, hss), hs),
     )
 
 
@@ -91,16 +104,16 @@ def covariant_hessian(jet_a, jet_b):
     a_uu, a_uv, a_vv = bending(dR, jet_a)
     b_rr, b_rs, b_ss = bending(scale(-1.0, dR), jet_b)
     return (
-        dot(fu, fu) + a_uu + 1.0 - active(fu),
+        diagonal(dot(fu, fu) + a_uu, fu),
         dot(fu, fv) + a_uv,
         -dot(fu, hr),
         -dot(fu, hs),
-        dot(fv, fv) + a_vv + 1.0 - active(fv),
+        diagonal(dot(fv, fv) + a_vv, fv),
         -dot(fv, hr),
         -dot(fv, hs),
-        dot(hr, hr) + b_rr + 1.0 - active(hr),
+        diagonal(dot(hr, hr) + b_rr, hr),
         dot(hr, hs) + b_rs,
-        dot(hs, hs) + b_ss + 1.0 - active(hs),
+        diagonal(dot(hs, hs) + b_ss, hs),
     )
 
 
@@ -153,12 +166,12 @@ def contact_jacobian(jet_a, jet_b, n, d, J):
     hr, hs = jet_b[1], jet_b[2]
     for k in range(64):
         J[k] = 0.0
-    J[at(0, 0)] = -dot(n, jet_a[3]) + 1.0 - active(fu)
+    J[at(0, 0)] = diagonal(-dot(n, jet_a[3]), fu)
     J[at(0, 1)] = -dot(n, jet_a[4])
-    J[at(1, 1)] = -dot(n, jet_a[5]) + 1.0 - active(fv)
-    J[at(2, 2)] = dot(n, jet_b[3]) + 1.0 - active(hr)
+    J[at(1, 1)] = diagonal(-dot(n, jet_a[5]), fv)
+    J[at(2, 2)] = diagonal(dot(n, jet_b[3]), hr)
     J[at(2, 3)] = dot(n, jet_b[4])
-    J[at(3, 3)] = dot(n, jet_b[5]) + 1.0 - active(hs)
+    J[at(3, 3)] = diagonal(dot(n, jet_b[5]), hs)
     for i in range(3):
         J[at(0, 4 + i)] = -fu[i]
         J[at(1, 4 + i)] = -fv[i]
