@@ -178,17 +178,17 @@ def touch_corners(system, packed, pair, witness, rows, first, motion, scratch):
     side = plane_of(system, pair)
     n, placed, at, count = plane_and_corners(system, pair, side, witness.pose)
     jets = pair_jets(packed, witness.pose, witness.place)
-    radii = packed.reals_a[RADIUS] + packed.reals_b[RADIUS]
+    radii = (packed.reals_a[RADIUS], packed.reals_b[RADIUS])
     level = dot(n, jets[side][0])
     sign = 1.0 if side == 0 else -1.0
     R, origin = read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)
     lost = 0.0
     for k in range(count):
         x = add(rotate(placed.R, read_vector(system.numbers, at + 3 * k)), placed.p)
-        depth = radii - sign * (dot(n, x) - level)
+        depth = radii[0] + radii[1] - sign * (dot(n, x) - level)
         if depth > 0.0:
-            # the middle between the plane and the corner
-            middle = axpy(sign * 0.5 * (depth - radii), n, x)
+            # the middle between the swept plane and the ball about the corner
+            middle = axpy(sign * (0.5 * depth - radii[1 - side]), n, x)
             point = add(rotate(R, middle), origin)
             spot = Spot(point, depth, 1.0)
             lost += press(system, pair, rows, first, motion, rotate(R, n), spot, scratch)
