@@ -37,6 +37,7 @@ from standoff.kernels.dynamics.arrays import (
     pair_numbers,
 )
 from standoff.kernels.dynamics.contact_force import Material, spot_push
+from standoff.kernels.dynamics.eased_friction import book_grip, part_between
 from standoff.kernels.dynamics.flat_contact import flat_spots, height, share
 from standoff.kernels.dynamics.flat_parts import (
     F_KIND,
@@ -90,10 +91,10 @@ def velocity_between(motion, x):
 def press(system, pair, rows, first, motion, n, spot, scratch):
     """Add the force of one spot to both bodies; returns the power that it loses. n is in world
     axes."""
-    done = spot_push(
-        material_of(system, pair), spot.share, spot.depth, n, velocity_between(motion, spot.point)
-    )
     a, b = bodies_of(system, pair)
+    velocity = velocity_between(motion, spot.point)
+    part = part_between(system, scratch.loads, a, b)
+    done = spot_push(material_of(system, pair), spot.share, spot.depth, n, velocity, part)
     load(system, b, rows, first + N_BODY * b, spot.point, done.force, scratch.loads)
     opposite = scale(-1.0, done.force)
     load(system, a, rows, first + N_BODY * a, spot.point, opposite, scratch.loads)
@@ -104,6 +105,8 @@ def press(system, pair, rows, first, motion, n, spot, scratch):
     touch[o + T_DEPTH] = max(touch[o + T_DEPTH], spot.depth)
     touch[o + T_SPOTS] += 1.0
     tell_spot(scratch.told, pair, n, spot, done.force)
+    if done.grip > 0.0:
+        book_grip(system, pair, rows, first, spot.point, n, done.grip, scratch.loads)
     return done.lost
 
 

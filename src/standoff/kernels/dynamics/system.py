@@ -5,6 +5,7 @@ from standoff.kernels.algebra.vectors import scale
 from standoff.kernels.compiler.decorators import kernel, pointer
 from standoff.kernels.dynamics.arrays import (
     B_DRIVEN,
+    E_SLOWED,
     FREE,
     I_INSIDE,
     N_BODY,
@@ -13,16 +14,20 @@ from standoff.kernels.dynamics.arrays import (
     R_GIVEN,
     R_LOST,
     R_TURN,
+    S_EASED,
     body_ints,
     body_rates,
     body_row,
+    eased_row,
     kind_of,
     n_bodies,
+    n_rates,
     options_of,
     pair_rates,
     pair_row,
 )
 from standoff.kernels.dynamics.coupled_tool import add_pull, coupled
+from standoff.kernels.dynamics.eased_friction import begin_friction, ease_friction
 from standoff.kernels.dynamics.forces import Witness, clear_touch, touch_pair
 from standoff.kernels.dynamics.inside_law import (
     near_contact,
@@ -51,6 +56,8 @@ from standoff.kernels.values import Motion
 def clear_loads(system, scratch):
     for k in range(N_LOAD * n_bodies(system)):
         scratch.loads[k] = 0.0
+    for body in range(n_bodies(system)):
+        scratch.loads[eased_row(system, body) + E_SLOWED] = 0.0
 
 
 @kernel
@@ -134,22 +141,50 @@ def bodies_rates(system, s, lost, rates, scratch):
 
 
 @kernel
+def touch_pairs(system, state, s, rates, work, scratch):
+    """The loads at a stage, of contacts and of a coupler; the power that contacts lose."""
+    clear_loads(system, scratch)
+    lost = 0.0
+    for k in range(n_visited(system, scratch)):
+        pair = visited(scratch, k)
+        if system.layout[I_INSIDE]:
+            lost += touch_ahead(system, pair, state, s, rates, work, scratch)
+        else:
+            lost += touch_tracked(system, pair, state, scratch.stage, body_row(0), scratch)
+    if coupled(system):
+        add_pull(system, state, scratch.stage, body_row(0), scratch.loads)
+    return lost
+
+
+@kernel
+def copy_rates(system, rates, source, target):
+    """Those of the pairs, which a stage that is loaded twice begins with."""
+    for k in range(pair_rates(system, 0), n_rates(system)):
+        rates[target + k] = rates[source + k]
+
+
+@kernel
+def load_stage(system, state, s, rates, work, scratch):
+    """`touch_pairs` with as much of the friction as a step bears."""
+    behind = n_rates(system)
+    copy_rates(system, rates, 0, behind)
+    begin_friction(system, scratch.loads)
+    lost = touch_pairs(system, state, s, rates, work, scratch)
+    if not ease_friction(system, scratch.loads):
+        return lost
+    state[S_EASED] += 1.0 if s == 0.0 else 0.0
+    copy_rates(system, rates, behind, 0)
+    return touch_pairs(system, state, s, rates, work, scratch)
+
+
+@kernel
 def stage_of(system, state, s, held, rates, work, scratch):
     """All rates at a stage, whose bodies stand in the scratch, a time s after the start. `held`:
     the loads stay those of the start, as a tracker beside the operator leaves them.
     """
     lost = rates[R_LOST]
     if not held:
-        clear_loads(system, scratch)
-        lost = 0.0
-        for k in range(n_visited(system, scratch)):
-            pair = visited(scratch, k)
-            if system.layout[I_INSIDE]:
-                lost += touch_ahead(system, pair, state, s, rates, work, scratch)
-            else:
-                lost += touch_tracked(system, pair, state, scratch.stage, body_row(0), scratch)
-        if coupled(system):
-            add_pull(system, state, scratch.stage, body_row(0), scratch.loads)
+        lost = load_stage(system, state, s, rates, work, scratch)
     bodies_rates(system, s, lost, rates, scratch)
 
 
