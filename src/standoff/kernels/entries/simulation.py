@@ -32,6 +32,7 @@ from standoff.kernels.dynamics.arrays import (
     options_of,
     pair_row,
     polytope_row,
+    shared_row,
 )
 from standoff.kernels.dynamics.coupled_tool import (
     book_pull,
@@ -327,9 +328,9 @@ def load_system(packed, state, loads, row):
     """What contacts do to bodies at their places in a state, for methods that are not ours.
 
     The trackers go to the state's poses from where they are in it, in place. `loads` become those
-    of the bodies, N_LOAD numbers each, and then the power that the contacts lose and that driven
-    bodies give; `row` becomes the account of the state. Returns FINE, or why a pose or twist was
-    refused.
+    of the bodies, N_LOAD numbers each, then the power that the contacts lose, that driven bodies
+    give and that springs have by being shared; `row` becomes the account of the state. Returns
+    FINE, or why a pose or twist was refused.
     """
     system = system_of(packed)
     arrays, near = scratch_for(system, np.zeros(TOLD_HEADER)), near_arrays(system)
@@ -353,6 +354,6 @@ def load_system(packed, state, loads, row):
     end = N_LOAD * n_bodies(system)
     for k in range(end):
         loads[k] = scratch.loads[k]
-    loads[end], loads[end + 1] = lost, given
+    loads[end], loads[end + 1], loads[end + 2] = lost, given, scratch.loads[shared_row(system)]
     keep_alive(arrays, near, counts, log)
     return FINE
