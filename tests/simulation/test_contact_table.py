@@ -51,7 +51,6 @@ KINDS: Final = {
     "superellipsoid": Kind(
         lambda: so.shapes.superellipsoid(0.1, 0.1, 0.08, 0.9, 1.0), STANDING, (1, 1), 0.0, False
     ),
-    "lens": Kind(lambda: so.shapes.lens(0.2, 0.1), LYING, (None, None), 0.0, False),
     "capsule": Kind(lambda: so.shapes.capsule(0.1, 0.2), LYING, (2, 2), 0.1, True),
     "cylinder": Kind(lambda: so.shapes.cylinder(0.1, 0.2), LYING, (2, 2), 0.1, True),
     "rounded cylinder": Kind(
@@ -71,7 +70,7 @@ KINDS: Final = {
         ),
         STANDING,
         (4, 4),
-        0.1 * np.sqrt(2.0),
+        0.08 * np.sqrt(2.0),
         False,
     ),
     "hull": Kind(lambda: so.shapes.polytope(HEXAGON), STANDING, (6, 4), 0.1, False),
@@ -152,10 +151,11 @@ def drop(kind: str, floor: str) -> float:
 
 
 def slide(kind: str, floor: str) -> float:
-    """It slows by mu g, and turns by what that turns it, if it is round."""
+    """It slows by mu times what presses it, and turns by what that turns it, if it is round."""
     time, speed = 0.05, 1.0
     run, mass = run_of(kind, floor, time, [0.0, 0.0, -G], v=[speed, 0.0, 0.0])
-    lost = MU * G * time
+    # all that pressed it: its weight, and what moves its centre up
+    lost = MU * (G * time + run.velocities(1)[-1, 2])
     off = abs((speed - run.velocities(1)[-1, 0]) / lost - 1.0)
     if KINDS[kind].round:
         height = made(kind, floor)[2]
