@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from itertools import product
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -137,17 +138,15 @@ def rest(kind: str, floor: str) -> float:
     weight = mass.mass * G
     off = abs(run.forces[-1, 0, 2] / weight - 1.0)
     n = KINDS[kind].springs[floor != "half-space"]
-    if floor == "solid" and kind not in ("sphere", "box"):
-        return off
     if n is not None:
         off = max(off, abs(-run.distances[-1, 0] / (weight / (n * 1e7)) ** (2.0 / 3.0) - 1.0))
-    return off
+    return float(off)
 
 
 def drop(kind: str, floor: str) -> float:
     """It leaves the floor as its restitution says, whatever springs push it."""
     run, _ = run_of(kind, floor, 0.03, np.zeros(3), 1e-4, v=[0.0, 0.0, -0.5])
-    return abs(run.velocities(1)[-1, 2] / (0.5 * LAW.restitution(0.5)) - 1.0)
+    return float(abs(run.velocities(1)[-1, 2] / (0.5 * LAW.restitution(0.5)) - 1.0))
 
 
 def slide(kind: str, floor: str) -> float:
@@ -161,7 +160,7 @@ def slide(kind: str, floor: str) -> float:
         height = made(kind, floor)[2]
         turned = mass.mass * lost * height / about(kind, mass, 1)
         off = max(off, abs(run.angular_velocities(1)[-1, 1] / turned - 1.0))
-    return off
+    return float(off)
 
 
 def spin(kind: str, floor: str) -> float:
@@ -169,7 +168,8 @@ def spin(kind: str, floor: str) -> float:
     time, rate = 0.05, 10.0
     run, mass = run_of(kind, floor, time, [0.0, 0.0, -G], w=[0.0, 0.0, rate])
     slowed = MU * mass.mass * G * KINDS[kind].reach * time / about(kind, mass, 2)
-    return abs(run.angular_velocities(1)[-1, 2] - (rate - slowed)) / max(slowed, 0.1 * rate)
+    off = abs(run.angular_velocities(1)[-1, 2] - (rate - slowed))
+    return float(off / max(slowed, 0.1 * rate))
 
 
 def roll(kind: str, floor: str) -> float:
@@ -179,7 +179,7 @@ def roll(kind: str, floor: str) -> float:
     run, mass = run_of(kind, floor, time, down)
     height = made(kind, floor)[2]
     k = about(kind, mass, 1) / (mass.mass * height**2)
-    return abs(run.velocities(1)[-1, 0] / (G * np.sin(SLOPE) / (1.0 + k) * time) - 1.0)
+    return float(abs(run.velocities(1)[-1, 0] / (G * np.sin(SLOPE) / (1.0 + k) * time) - 1.0))
 
 
 OFF: Final[dict[str, Callable[[str, str], float]]] = {
@@ -191,18 +191,33 @@ OFF: Final[dict[str, Callable[[str, str], float]]] = {
 }
 
 
+ALONG_A_LINE: Final = ("capsule", "rounded cylinder")
+"""As a solid, which touches at one place where smooth faces meet all along a line: it has one
+spring, not two, and friction does not slow its spin there."""
+ROUND_A_RIM: Final = ("standing cylinder", "standing rounded cylinder", "cone")
+"""As a solid, whose springs round a rim are as many as its spots share (`Energy.shared`)."""
+
+
+def has_closed_form(kind: str, floor: str, motion: str) -> bool:
+    """What is not round does not roll; how many springs carry a solid is not known of all."""
+    if floor == "solid" and motion in ("rest", "spin") and kind in ALONG_A_LINE:
+        return False
+    if floor == "solid" and motion in ("rest", "drop", "spin") and kind in ROUND_A_RIM:
+        return False
+    return KINDS[kind].round or motion != "roll"
+
+
 def cases() -> list[tuple[str, str, str]]:
-    """All that have a closed form: what is not round does not roll."""
-    return [
-        (kind, floor, motion)
-        for kind, body in KINDS.items()
-        for floor in FLOORS
-        for motion in MOTIONS
-        if body.round or motion != "roll"
-    ]
+    return [each for each in product(KINDS, FLOORS, MOTIONS) if has_closed_form(*each)]
 
 
-@pytest.mark.parametrize("case", only(cases()[::7], cases()), ids=" - ".join)
+def always() -> list[tuple[str, str, str]]:
+    """Those of every run: some of convex bodies, and two of solids, whose ticks take long."""
+    convex = [each for each in cases() if each[1] != "solid"]
+    return [*convex[::6], ("sphere", "solid", "roll"), ("box", "solid", "spin")]
+
+
+@pytest.mark.parametrize("case", only(always(), cases()), ids=" - ".join)
 def test_a_motion_is_that_of_its_closed_form(case: tuple[str, str, str]) -> None:
     kind, floor, motion = case
     assert OFF[motion](kind, floor) < WITHIN[motion]
