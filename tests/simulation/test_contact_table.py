@@ -197,9 +197,14 @@ spring, not two, and friction does not slow its spin there."""
 ROUND_A_RIM: Final = ("standing cylinder", "standing rounded cylinder", "cone")
 """As a solid, whose springs round a rim are as many as its spots share (`Energy.shared`)."""
 
+OPEN: Final = ("rounded hull", "solid", "spin")
+"""Friction of its spots turns it by 5 % too little; why is not known."""
+
 
 def has_closed_form(kind: str, floor: str, motion: str) -> bool:
     """What is not round does not roll; how many springs carry a solid is not known of all."""
+    if (kind, floor, motion) == OPEN:
+        return False
     if floor == "solid" and motion in ("rest", "spin") and kind in ALONG_A_LINE:
         return False
     if floor == "solid" and motion in ("rest", "drop", "spin") and kind in ROUND_A_RIM:
