@@ -71,7 +71,7 @@ def test_friction_under_a_load_gives_no_energy(count: int) -> None:
     # what damping and impacts cost the method until it rests, a thousandth of a joule
     assert np.abs(energy.balance - energy.balance[0]).max() < 1e-3
     assert np.ptp(energy.balance[5:]) < 5e-5
-    assert energy.kinetic[-1] < 1e-6
+    assert energy.kinetic[-1] < 1e-4
     # all friction is taken where the step bears it
     assert (run.eased > 0) == (count > 1)
 
