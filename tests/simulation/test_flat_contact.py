@@ -56,6 +56,42 @@ def test_a_stack_stands() -> None:
     assert carried == pytest.approx(weight * np.array([3.0, 2.0, 1.0]), rel=5e-2)
 
 
+@pytest.mark.parametrize("count", [1, 5])
+def test_friction_under_a_load_gives_no_energy(count: int) -> None:
+    """The lowest box bears nine times its own weight, for which the step was checked."""
+    law = sim.HuntCrossley(stiffness=1e6, damping=2.0, friction=0.5, slip_speed=5e-3, depth=2e-3)
+    bodies = [sim.RigidBody.fixed(so.shapes.box(2.0, 2.0, 0.2), upright(-0.1))]
+    for k in range(count):
+        pose = upright(0.1 * (k + 0.5) + 1e-4 * (k + 1), 0.005 * (k % 2))
+        bodies.append(sim.RigidBody.free(so.shapes.box(0.2, 0.2, 0.1), density=1000.0, pose=pose))
+    pairs = [(k, k + 1) for k in range(count)]
+    operator = sim.Operator(sim.System(bodies, law, pairs), 1e-4)
+    run = operator.run(operator.start(), 10_000, every=1000)
+    energy = run.energy
+    # what damping and impacts cost the method until it rests, a thousandth of a joule
+    assert np.abs(energy.balance - energy.balance[0]).max() < 1e-3
+    assert np.ptp(energy.balance[5:]) < 5e-5
+    assert energy.kinetic[-1] < 1e-4
+    # all friction is taken where the step bears it
+    assert (run.eased > 0) == (count > 1)
+
+
+def test_friction_of_an_impact_ends_a_slip_within_ticks() -> None:
+    """A ball that hits the floor with a thousand times its weight, and slips a little there."""
+    law = sim.HuntCrossley(stiffness=1e8, friction=1.0, slip_speed=2e-3, depth=1e-3)
+    twist = so.Twist([1e-3, 0.0, -2.0], [0.0, 0.0, 0.0])
+    system = on_floor(so.shapes.sphere(0.1), law, np.zeros(3), pose=upright(0.1), twist=twist)
+    operator = sim.Operator(system, 2e-5)
+    run = operator.run(operator.start(), 60, every=1)
+    slip = run.velocities(1)[:, 0] - 0.1 * run.angular_velocities(1)[:, 1]
+    assert run.eased > 0
+    assert np.abs(slip).max() <= 1e-3 * (1.0 + 1e-9)
+    # the place of contact is in the middle of the overlap, a little nearer to the centre
+    assert np.abs(slip[-20:]).max() < 1e-5
+    # it rolls now, as it would without any slip: 5/7 of its speed
+    assert run.velocities(1)[-1, 0] == pytest.approx(5.0 / 7.0 * 1e-3, rel=1e-2)
+
+
 def test_a_cylinder_stands_on_its_rim() -> None:
     system = on_floor(so.shapes.cylinder(0.1, 0.1), FIRM, pose=upright(0.05))
     operator = sim.Operator(system, 5e-5)

@@ -109,6 +109,19 @@ def test_a_state_s_contacts_are_those_of_its_record(both: tuple[Operator, System
     _same(stored.contacts(20), run.contacts(20))
 
 
+def test_rows_below_zero_count_from_the_end(both: tuple[Operator, SystemRun]) -> None:
+    _, run = both
+    count = len(run.times)
+    for row in (-1, -count, np.int64(-2)):
+        _same(run.contacts(row), run.contacts(row + count))
+        _same(run.state(row).data, run.state(row + count).data)
+    for row in (count, -count - 1, 0.0):
+        with pytest.raises(StandoffError, match=f"from {-count} to {count - 1}"):
+            run.contacts(row)
+        with pytest.raises(StandoffError, match="row"):
+            run.state(row)
+
+
 def _same(found: Any, expected: Any) -> None:
     """Do tuples of tuples hold the same numbers?"""
     if isinstance(expected, tuple | list):

@@ -96,6 +96,7 @@ def _facts(scene: SimulationScene, run: SystemRun) -> dict[str, Any]:
         "deepest": run.deepest,
         "uncertified": run.uncertified,
         "ended_deep": run.jumps,
+        "eased": run.eased,
     }
 
 
@@ -157,7 +158,7 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
 def _energy_lines(run: SystemRun, unit: Units) -> list[str]:
     energy = run.energy
     names = ["kinetic", "stored", "dissipated", "supplied"]
-    names += ["shared"] if any(run.system.of_solids) else []
+    names += ["shared"] if energy.shared.any() else []
     told = ", ".join(
         f"{name} {getattr(energy, name)[-1] + 0.0:.6g} {unit.energy}" for name in names
     )

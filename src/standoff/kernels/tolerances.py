@@ -292,6 +292,10 @@ MOST_HELD = 4
 # tilt of bodies at rest on each other (depth over size), far below that of one that has tipped.
 FLAT_TILT = 0.02
 
+# Radians: the most that a body turns between two looks at the springs of a flat contact, so that
+# their difference is the slope of what they hold, which bends over FLAT_TILT.
+SHARED_TURN = 0.1 * FLAT_TILT
+
 # Jacobi's sweeps end where the squares off the diagonal sum to this part of those on it: by then a
 # rotation changes no digit.
 JACOBI_REST = 1e-36

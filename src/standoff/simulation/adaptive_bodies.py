@@ -20,7 +20,7 @@ from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.adaptive_legs import Legs, SystemEvent
-from standoff.simulation.loaded_bodies import Features, LoadedBodies
+from standoff.simulation.loaded_bodies import POWERS, Features, LoadedBodies
 from standoff.simulation.packed_system import driven_row
 from standoff.simulation.rigid_body import DRIVEN, FREE
 from standoff.simulation.system import System
@@ -34,7 +34,7 @@ CHART: Final = 1.5
 
 TURN, CENTRE, VELOCITY, SPIN = 0, 3, 6, 9
 WIDTH = 12
-"""A free body's part of what is integrated; the energies lost and given come after all of them."""
+"""A free body's part of what is integrated; the energies (POWERS) come after all of them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def solve_bodies(
             system,
         )
     legs = _Bodies(system, float(options["max_step"]), allow_overlap)
-    found = legs.solve(0.0, np.zeros(WIDTH * len(legs.free) + 2), end, options)
+    found = legs.solve(0.0, np.zeros(WIDTH * len(legs.free) + len(POWERS)), end, options)
     states = np.array(found.states)
     accounts = np.array(legs.accounts)
     for array in (states, accounts):
@@ -126,7 +126,7 @@ class _Bodies(Legs):
             row = self.data[K.body_row(number) :]
             self.turns[k] = row[K.X_ROTATION : K.X_ROTATION + 9].reshape(3, 3).copy()
             parts += [np.zeros(3), row[K.X_CENTRE : K.X_SPIN + 3]]
-        return np.concatenate([*parts, [0.0, 0.0]])
+        return np.concatenate([*parts, np.zeros(len(POWERS))])
 
     def _rotation(self, k: int, f: Array) -> Array:
         turned = scipy.spatial.transform.Rotation.from_rotvec(f).as_matrix()
@@ -161,7 +161,7 @@ class _Bodies(Legs):
             rate[CENTRE:VELOCITY] = part[VELOCITY:SPIN]
             rate[VELOCITY:SPIN] = self.system.gravity + own[:3] / mass.mass
             rate[SPIN:] = own[3:]
-        rates[-2:] = loads[-2:]
+        rates[-len(POWERS) :] = loads[-len(POWERS) :]
         return rates
 
     def distances(self, t: float, y: Array) -> list[float]:
@@ -182,7 +182,7 @@ class _Bodies(Legs):
         self.place(t, y)
         self.so_far = self.data[counts].copy()
         row = self.data.copy()
-        row[K.S_LOST], row[K.S_GIVEN] = y[-2:]
+        row[list(POWERS)] = y[-len(POWERS) :]
         self.accounts.append(self.bodies.account.copy())
         return row
 

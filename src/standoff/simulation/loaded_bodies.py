@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 
 Features = list[tuple[str, str]]
 
+POWERS = (K.S_LOST, K.S_GIVEN, K.S_SHARED)
+"""The energies of a state whose rates stand behind the loads of all bodies."""
+
 LAW = PredictorCorrector(predictor="none", depth="local")
 """Evaluations of an adaptive method are at any times, in any order: nothing is predicted."""
 
@@ -46,7 +49,7 @@ class LoadedBodies:
     loads : ndarray
         What the contacts do to each body, N_LOAD numbers: force and torque, the torque about the
         centre of mass of a free body, and about the origin of another; and behind all of them the
-        power that contacts lose and that driven bodies give.
+        powers (POWERS).
     account : ndarray
         Energies and contacts.
     """
@@ -55,7 +58,7 @@ class LoadedBodies:
         self.system = system
         laws = laws_beside(system, LAW)
         self.data = started(system, laws, dt, 0.0, allow_overlap).data.copy()
-        self.loads = np.zeros(K.N_LOAD * len(system.bodies) + 2)
+        self.loads = np.zeros(K.N_LOAD * len(system.bodies) + len(POWERS))
         self.account = np.zeros(entries.ACCOUNT_HEADER + K.N_TOUCH * len(system.pairs))
         self._packed = pack_system(system, dt, 0, False, packed_laws(system, laws, dt, False))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.checks.numbers import whole_number
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
 from standoff.kernels.entries import simulation as E
@@ -55,8 +56,15 @@ class SystemRun(KeepsReadOnly):
         return self.state(len(self.states) - 1) if self.last is None else self.last
 
     def state(self, row: int) -> SystemState:
-        """Return a state of the record, from which a run can continue."""
-        data = self.states[row].copy()
+        """Return a state of the record, from which a run can continue; rows below 0 count from the
+        end.
+
+        Raises
+        ------
+        StandoffError
+            No row of the record.
+        """
+        data = self.states[self._checked(row)].copy()
         data.flags.writeable = False
         return SystemState(self.system, data)
 
@@ -106,20 +114,21 @@ class SystemRun(KeepsReadOnly):
 
     def contacts(self, row: int) -> tuple[PairContact, ...]:
         """Return all contacts of a record: pairs that touch or nearly do, with all their places and
-        what each spot pushes.
+        what each spot pushes. Rows below 0 count from the end.
 
         Raises
         ------
         StandoffError
-            A run that was not asked for them.
+            A run that was not asked for them; no row of the record.
         """
         if self.told is None:
             raise StandoffError(
                 "This run has kept no contacts: operator.run(..., contacts=True) keeps those of "
                 "each record."
             )
-        spots, places = self.told.spots_of(row), self.told.places_of(row)
-        return pair_contacts(self.system, self.states[row], spots, places)
+        own = self._checked(row)
+        spots, places = self.told.spots_of(own), self.told.places_of(own)
+        return pair_contacts(self.system, self.states[own], spots, places)
 
     @property
     def energy(self) -> Energy:
@@ -154,6 +163,16 @@ class SystemRun(KeepsReadOnly):
     def jumps(self) -> int:
         """As of the last state: `SystemState.jumps`."""
         return self.final.jumps
+
+    @property
+    def eased(self) -> int:
+        """As of the last state: `SystemState.eased`."""
+        return self.final.eased
+
+    def _checked(self, row: int) -> int:
+        """A row of the record, from 0 on."""
+        count = len(self.states)
+        return whole_number(row, "row", -count, count - 1) % count
 
     def _touches(self) -> Array:
         shape = (len(self.accounts), len(self.system.pairs), K.N_TOUCH)

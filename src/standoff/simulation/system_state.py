@@ -38,9 +38,9 @@ class Energy(NamedTuple):
     supplied : float or array
         Given by driven bodies and by a coupler's wrench on its tool since the start.
     shared : float or array
-        What the springs of solids' contacts hold more since the start by no work, because they
-        were shared anew among their spots; less than zero where they hold less. These forces are
-        no gradient of an energy, and this is what comes of that.
+        What the springs of contacts with several spots hold more since the start by no work,
+        because they were shared anew among them; less than zero where they hold less. These forces
+        are no gradient of an energy, and this is what comes of that.
     """
 
     kinetic: Any
@@ -127,6 +127,13 @@ class SystemState(KeepsReadOnly):
         """How many places of contact of solids have ended since the start while they were pressed,
         without another one in their stead: their force ended with them."""
         return int(self.data[K.S_JUMPS])
+
+    @property
+    def eased(self) -> int:
+        """How many ticks since the start had a body whose friction, taken whole, would have thrown
+        its slip back, and was taken in part: a step too long, or a slip speed too small, for what
+        pressed there."""
+        return int(self.data[K.S_EASED])
 
     @property
     def coupler(self) -> CouplerState | None:

@@ -51,19 +51,19 @@ REAL_PAIR = 9
 
 # The state: time, energy lost in contacts, energy that driven bodies and a coupler gave, the
 # greatest depth so far, ticks with a pair that was not certified, places of contact of solids that
-# ended deep, energy that springs of solids' contacts have by being shared anew; a row a body; a row
-# a pair; a coupler's own (``coupler_arrays``); and, not recorded, what pairs of solids have kept
-# (``kernels.solids.contact_places``) and the polytopes that pairs in penetration have.
-S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED, S_JUMPS, S_SHARED = range(7)
+# ended deep, energy that springs have by being shared anew, ticks whose friction was eased; a row a
+# body; a row a pair; a coupler's own (``coupler_arrays``); and, not recorded, what pairs of solids
+# have kept (``kernels.solids.contact_places``) and the polytopes that pairs in penetration have.
+S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED, S_JUMPS, S_SHARED, S_EASED = range(8)
 STATE_HEADER = 8
 X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
 N_BODY = 18
 N_PAIR = N_STATE + N_OUT
 
-# Rates of the state: of the two energies; a body's turn (body axes), velocity, acceleration and
-# torque; a pair's four parameters.
-R_LOST, R_GIVEN = 0, 1
-RATE_HEADER = 2
+# Rates of the state: of the energies lost, given and shared; a body's turn (body axes), velocity,
+# acceleration and torque; a pair's four parameters.
+R_LOST, R_GIVEN, R_SHARED = 0, 1, 2
+RATE_HEADER = 3
 R_TURN, R_SPEED, R_PUSH, R_TORQUE = 0, 3, 6, 9
 RATE_BODY = 12
 RATE_PAIR = 4
@@ -78,8 +78,12 @@ TOLD, TOLD_ROOM = 0, 1
 TOLD_HEADER = 2
 U_PAIR, U_POINT, U_NORMAL, U_DEPTH, U_SHARE, U_FORCE = 0, 1, 4, 7, 8, 9
 N_TOLD = 12
-# A body's loads: force, and torque about its centre, world.
+# A body's loads: force, and torque about its centre, world. Behind those of all bodies, for each:
+# by what friction slows its slip, 1/time, and the part of it that is taken (``eased_friction``);
+# then what flat contacts are given by sharing their springs, power (``flat_sharing``).
 N_LOAD = 6
+E_SLOWED, E_PART = 0, 1
+N_EASED = 2
 
 # A row of the table of driven motions: a pose (12) and a twist (6).
 N_DRIVEN = 18
@@ -114,10 +118,10 @@ class Scratch(NamedTuple):
     """What one tick writes over: pointers, but for the two arrays."""
 
     stage: Any  # array: rows of the bodies at a stage, as a state has them
-    rates: Any  # of one stage
+    rates: Any  # of one stage, and behind them as they were when it began
     total: Any  # of the whole step
     first: Any  # of its first stage
-    loads: Any  # N_LOAD numbers a body
+    loads: Any  # N_LOAD numbers a body, then N_EASED a body, then one
     motion: Any  # array: N_MOTION numbers
     touch: Any  # N_TOUCH numbers a pair
     spots: Any  # see ``flat_contact``
@@ -188,6 +192,18 @@ def body_row(body):
 @kernel
 def pair_row(system, pair):
     return STATE_HEADER + N_BODY * n_bodies(system) + N_PAIR * pair
+
+
+@kernel
+def eased_row(system, body):
+    """Where a body's friction stands among the loads."""
+    return N_LOAD * n_bodies(system) + N_EASED * body
+
+
+@kernel
+def shared_row(system):
+    """Where what sharing gives stands among the loads."""
+    return eased_row(system, n_bodies(system))
 
 
 @kernel

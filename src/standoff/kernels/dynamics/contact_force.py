@@ -25,6 +25,7 @@ class Push(NamedTuple):
     force: Vector  # on B, world
     stored: float  # energy
     lost: float  # power, never below zero
+    grip: float  # all of friction over the slip, force time/length
 
 
 @kernel
@@ -40,12 +41,12 @@ def stored_in(spring, depth):
 
 
 @kernel
-def spot_push(material, share, depth, n, velocity):
+def spot_push(material, share, depth, n, velocity, part):
     """F = share k d^1.5 (1 + 1.5 c d'), which never pulls, and friction against the slip.
 
     Hunt and Crossley, J. Appl. Mech. 42 (1975). n is the unit normal from A to B, velocity that of
     B's point less that of A's. Friction is mu F u / sqrt(u² + slip²), u the slip: Coulomb's law
-    above the slip speed, viscous below it.
+    above the slip speed, viscous below it; a part of it is taken (``eased_friction``).
     """
     closing = -dot(n, velocity)
     spring = spring_of(material.stiffness, share, depth)
@@ -56,6 +57,7 @@ def spot_push(material, share, depth, n, velocity):
     grip = 0.0
     if material.friction > 0.0:
         grip = material.friction * normal / sqrt(square + material.slip * material.slip)
-    force = axpy(-grip, slipping, scale(normal, n))
-    lost = (normal - spring) * closing + grip * square
-    return Push(force, stored_in(spring, depth), lost)
+    taken = part * grip
+    force = axpy(-taken, slipping, scale(normal, n))
+    lost = (normal - spring) * closing + taken * square
+    return Push(force, stored_in(spring, depth), lost, grip)

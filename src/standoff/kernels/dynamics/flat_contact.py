@@ -48,6 +48,7 @@ class Shared(NamedTuple):
     a: Flat
     b: Flat
     frame: Frame
+    cut: bool  # are they not all corners of one of the parts?
 
 
 @kernel
@@ -151,11 +152,27 @@ def shared_length(points, a, b):
 
 
 @kernel
-def laid_over(a, b, frame, points):
-    """(where, how many, how level) of the corners that two flat parts share."""
+def lies_within(points, flat, at, other, o):
+    """Does all of a flat part that is laid at points[at] lie within another one, at points[o]?"""
+    if other.kind == PLANE:
+        return True
+    if flat.kind == PLANE or other.kind == SEGMENT:
+        return False
+    left = 1.0 if turned_left(points, o, other.count) >= 0.0 else -1.0
+    for k in range(other.count):
+        i, j = o + 2 * k, o + 2 * ((k + 1) % other.count)
+        dx, dy = left * (points[j] - points[i]), left * (points[j + 1] - points[i + 1])
+        for c in range(flat.count):
+            x, y = points[at + 2 * c], points[at + 2 * c + 1]
+            if dx * (y - points[i + 1]) - dy * (x - points[i]) < 0.0:
+                return False
+    return True
+
+
+@kernel
+def laid_over(a, b, points):
+    """(where, how many, how level) of the corners that two flat parts share, which are laid."""
     at_a, at_b = SEEN_A, SEEN_B
-    lay(a, frame, points, at_a)
-    lay(b, frame, points, at_b)
     even = level(a.tilt) * level(b.tilt)
     if a.kind == PLANE and b.kind == PLANE:
         return at_a, 0, 0.0
@@ -199,10 +216,14 @@ def flat_spots(system, pair, pose, n, heights, points):
     first, second = bodies_of(system, pair)
     a = flat_part(system, Placed(first, IDENTITY, (0.0, 0.0, 0.0)), n, heights[0], points, SPACE_A)
     if a.kind == NOTHING:
-        return Shared(0, SEEN_A, 0.0, a, a, frame)
+        return Shared(0, SEEN_A, 0.0, a, a, frame, False)
     placed = Placed(second, pose.R, pose.p)
     b = flat_part(system, placed, scale(-1.0, n), heights[1], points, SPACE_B)
     if b.kind == NOTHING:
-        return Shared(0, SEEN_A, 0.0, a, b, frame)
-    at, count, even = laid_over(a, b, frame, points)
-    return Shared(count, at, even, a, b, frame)
+        return Shared(0, SEEN_A, 0.0, a, b, frame, False)
+    lay(a, frame, points, SEEN_A)
+    lay(b, frame, points, SEEN_B)
+    # before they are laid over each other, which writes over them
+    whole = lies_within(points, b, SEEN_B, a, SEEN_A) or lies_within(points, a, SEEN_A, b, SEEN_B)
+    at, count, even = laid_over(a, b, points)
+    return Shared(count, at, even, a, b, frame, not whole)

@@ -6,10 +6,15 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.rigid import read_rotation, read_vector
-from standoff.kernels.algebra.vectors import add, axpy, cross, dot, rotate, scale, sub
+from standoff.kernels.algebra.rigid import (
+    read_rotation,
+    read_vector,
+    relative_pose,
+    relative_twist,
+)
+from standoff.kernels.algebra.vectors import add, axpy, cross, dot, norm, rotate, scale, sub
 from standoff.kernels.body.layout import RADIUS
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, pointer
 from standoff.kernels.dynamics.arrays import (
     B_FLATS,
     N_BODY,
@@ -19,6 +24,7 @@ from standoff.kernels.dynamics.arrays import (
     P_FRICTION,
     P_SLIP,
     P_STIFFNESS,
+    STEP,
     T_DEPTH,
     T_FORCE,
     T_SPOTS,
@@ -35,9 +41,11 @@ from standoff.kernels.dynamics.arrays import (
     bodies_of,
     body_ints,
     pair_numbers,
+    shared_row,
 )
 from standoff.kernels.dynamics.contact_force import Material, spot_push
-from standoff.kernels.dynamics.flat_contact import flat_spots, height, share
+from standoff.kernels.dynamics.eased_friction import book_grip, part_between
+from standoff.kernels.dynamics.flat_contact import flat_spots
 from standoff.kernels.dynamics.flat_parts import (
     F_KIND,
     F_TIP_REALS,
@@ -46,10 +54,17 @@ from standoff.kernels.dynamics.flat_parts import (
     HALFSPACE,
     POLYTOPE,
 )
+from standoff.kernels.dynamics.flat_sharing import (
+    Flats,
+    Spot,
+    even_of,
+    flat_spot,
+    shared_a_second,
+)
 from standoff.kernels.dynamics.rigid_body import load, put
 from standoff.kernels.pair.descent import pair_jets
-from standoff.kernels.state.arrays import POSE_A, TWIST_A, TWIST_B
-from standoff.kernels.values import Pose, Vector
+from standoff.kernels.state.arrays import POSE_A, POSE_B, TWIST_A, TWIST_B
+from standoff.kernels.values import Motion, Pose, Vector
 
 
 class Witness(NamedTuple):
@@ -58,14 +73,6 @@ class Witness(NamedTuple):
     place: Any
     pose: Any  # B's, in A's frame
     normal: Vector  # A's frame
-
-
-class Spot(NamedTuple):
-    """Where a force acts, and its part of the spring; world."""
-
-    point: Vector
-    depth: float
-    share: float
 
 
 @kernel
@@ -87,13 +94,21 @@ def velocity_between(motion, x):
 
 
 @kernel
+def moving_pair(motion):
+    """B's motion seen from A, of a row of numbers."""
+    a, b = pointer(motion, POSE_A), pointer(motion, POSE_B)
+    v, w = relative_twist(a, b, pointer(motion, TWIST_A), pointer(motion, TWIST_B))
+    return Motion(relative_pose(a, b), v, w)
+
+
+@kernel
 def press(system, pair, rows, first, motion, n, spot, scratch):
     """Add the force of one spot to both bodies; returns the power that it loses. n is in world
     axes."""
-    done = spot_push(
-        material_of(system, pair), spot.share, spot.depth, n, velocity_between(motion, spot.point)
-    )
     a, b = bodies_of(system, pair)
+    velocity = velocity_between(motion, spot.point)
+    part = part_between(system, scratch.loads, a, b)
+    done = spot_push(material_of(system, pair), spot.share, spot.depth, n, velocity, part)
     load(system, b, rows, first + N_BODY * b, spot.point, done.force, scratch.loads)
     opposite = scale(-1.0, done.force)
     load(system, a, rows, first + N_BODY * a, spot.point, opposite, scratch.loads)
@@ -104,6 +119,8 @@ def press(system, pair, rows, first, motion, n, spot, scratch):
     touch[o + T_DEPTH] = max(touch[o + T_DEPTH], spot.depth)
     touch[o + T_SPOTS] += 1.0
     tell_spot(scratch.told, pair, n, spot, done.force)
+    if done.grip > 0.0:
+        book_grip(system, pair, rows, first, spot.point, n, done.grip, scratch.loads)
     return done.lost
 
 
@@ -125,17 +142,6 @@ def tell_spot(told, pair, n, spot, force):
 def clear_touch(scratch, pair):
     for k in range(N_TOUCH):
         scratch.touch[N_TOUCH * pair + k] = 0.0
-
-
-@kernel
-def flat_spot(shared, points, k, radii):
-    """Corner k of a flat contact: its point in A's frame, and its depth."""
-    frame = shared.frame
-    x, y = points[shared.at + 2 * k], points[shared.at + 2 * k + 1]
-    low = height(shared.a, frame, x, y) + radii[0]
-    high = height(shared.b, frame, x, y) - radii[1]
-    point = axpy(x, frame.e, axpy(y, frame.f, scale(0.5 * (low + high), frame.n)))
-    return Spot(point, low - high, share(points, shared.at, shared.count, k))
 
 
 @kernel
@@ -178,21 +184,29 @@ def touch_corners(system, packed, pair, witness, rows, first, motion, scratch):
     side = plane_of(system, pair)
     n, placed, at, count = plane_and_corners(system, pair, side, witness.pose)
     jets = pair_jets(packed, witness.pose, witness.place)
-    radii = packed.reals_a[RADIUS] + packed.reals_b[RADIUS]
+    radii = (packed.reals_a[RADIUS], packed.reals_b[RADIUS])
     level = dot(n, jets[side][0])
     sign = 1.0 if side == 0 else -1.0
     R, origin = read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)
     lost = 0.0
     for k in range(count):
         x = add(rotate(placed.R, read_vector(system.numbers, at + 3 * k)), placed.p)
-        depth = radii - sign * (dot(n, x) - level)
+        depth = radii[0] + radii[1] - sign * (dot(n, x) - level)
         if depth > 0.0:
-            # the middle between the plane and the corner
-            middle = axpy(sign * 0.5 * (depth - radii), n, x)
+            # the middle between the swept plane and the ball about the corner
+            middle = axpy(sign * (0.5 * depth - radii[1 - side]), n, x)
             point = add(rotate(R, middle), origin)
             spot = Spot(point, depth, 1.0)
             lost += press(system, pair, rows, first, motion, rotate(R, n), spot, scratch)
     return lost
+
+
+@kernel
+def slides(system, pair, motion, n):
+    """Is B's slip against A, at its origin, faster than what friction holds?"""
+    velocity = velocity_between(motion, read_vector(motion, POSE_B + 9))
+    slip = norm(axpy(-dot(n, velocity), n, velocity))
+    return slip > system.numbers[pair_numbers(system, pair) + P_SLIP]
 
 
 @kernel
@@ -214,7 +228,7 @@ def touch_pair(system, packed, pair, witness, rows, first, motion, scratch):
     world_n = rotate(R, n)
     heights = (dot(n, jet_a[0]), -dot(n, jet_b[0]))
     shared = flat_spots(system, pair, witness.pose, n, heights, scratch.spots)
-    even = shared.even if shared.count >= 2 else 0.0
+    even = even_of(shared)
     lost = 0.0
     for k in range(shared.count if even > 0.0 else 0):
         found = flat_spot(shared, scratch.spots, k, radii)
@@ -228,4 +242,9 @@ def touch_pair(system, packed, pair, witness, rows, first, motion, scratch):
         at = add(rotate(R, scale(0.5, add(low, high))), origin)
         spot = Spot(at, depth, 1.0 - even)
         lost += press(system, pair, rows, first, motion, world_n, spot, scratch)
+    if even > 0.0 and (even < 1.0 or (shared.cut and slides(system, pair, motion, world_n))):
+        flats = Flats(moving_pair(motion), n, jet_a[0], jet_b[0], radii)
+        k, h = material_of(system, pair).stiffness, system.numbers[STEP]
+        given = shared_a_second(system, pair, k, shared, flats, h, scratch.spots)
+        scratch.loads[shared_row(system)] += given
     return lost

@@ -13,8 +13,10 @@ from standoff.kernels.dynamics.arrays import (
     I_METHOD,
     R_GIVEN,
     R_LOST,
+    R_SHARED,
     S_GIVEN,
     S_LOST,
+    S_SHARED,
     X_ROTATION,
     body_rates,
     body_row,
@@ -112,6 +114,7 @@ def step_bodies(system, state, h, table, tick, work, scratch):
             put(orthonormal(read_rotation(state, o + X_ROTATION)), state, o + X_ROTATION)
     state[S_LOST] += h * scratch.total[R_LOST]
     state[S_GIVEN] += h * scratch.total[R_GIVEN]
+    state[S_SHARED] += h * scratch.total[R_SHARED]
 
 
 @kernel

@@ -1,10 +1,11 @@
 """The right-hand side of the whole operator: bodies, contacts and tracker parameters together."""
 
-from standoff.kernels.algebra.rigid import read_vector, relative_pose, relative_twist
+from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import scale
 from standoff.kernels.compiler.decorators import kernel, pointer
 from standoff.kernels.dynamics.arrays import (
     B_DRIVEN,
+    E_SLOWED,
     FREE,
     I_INSIDE,
     N_BODY,
@@ -12,18 +13,24 @@ from standoff.kernels.dynamics.arrays import (
     N_LOAD,
     R_GIVEN,
     R_LOST,
+    R_SHARED,
     R_TURN,
+    S_EASED,
     body_ints,
     body_rates,
     body_row,
+    eased_row,
     kind_of,
     n_bodies,
+    n_rates,
     options_of,
     pair_rates,
     pair_row,
+    shared_row,
 )
 from standoff.kernels.dynamics.coupled_tool import add_pull, coupled
-from standoff.kernels.dynamics.forces import Witness, clear_touch, touch_pair
+from standoff.kernels.dynamics.eased_friction import begin_friction, ease_friction
+from standoff.kernels.dynamics.forces import Witness, clear_touch, moving_pair, touch_pair
 from standoff.kernels.dynamics.inside_law import (
     near_contact,
     place_ahead,
@@ -37,11 +44,7 @@ from standoff.kernels.dynamics.solid_pairs import is_of_solids, touch_solids
 from standoff.kernels.state.arrays import (
     FAR,
     N_STATE,
-    POSE_A,
-    POSE_B,
     STATUS,
-    TWIST_A,
-    TWIST_B,
 )
 from standoff.kernels.state.state import read_four, read_state
 from standoff.kernels.values import Motion
@@ -51,15 +54,9 @@ from standoff.kernels.values import Motion
 def clear_loads(system, scratch):
     for k in range(N_LOAD * n_bodies(system)):
         scratch.loads[k] = 0.0
-
-
-@kernel
-def motion_of(scratch):
-    """B's motion seen from A, of the row of numbers in the scratch."""
-    m = scratch.motion
-    a, b = pointer(m, POSE_A), pointer(m, POSE_B)
-    v, w = relative_twist(a, b, pointer(m, TWIST_A), pointer(m, TWIST_B))
-    return Motion(relative_pose(a, b), v, w)
+    for body in range(n_bodies(system)):
+        scratch.loads[eased_row(system, body) + E_SLOWED] = 0.0
+    scratch.loads[shared_row(system)] = 0.0
 
 
 @kernel
@@ -75,7 +72,7 @@ def touch_tracked(system, pair, state, rows, first, scratch):
         return touch_solids(system, pair, state, rows, first, scratch)
     before = read_state(pointer(state, pair_row(system, pair)))
     write_motion(system, pair, rows, first, scratch.motion)
-    pose, n = motion_of(scratch).pose, before.normal
+    pose, n = moving_pair(scratch.motion).pose, before.normal
     packed = packed_pair(system, pair)
     if system.layout[I_INSIDE] and not near_contact(packed, before):
         n = stage_normal(packed, pose, before.place, False, n)
@@ -90,7 +87,7 @@ def touch_ahead(system, pair, state, s, rates, work, scratch):
     """
     before = read_state(pointer(state, pair_row(system, pair)))
     write_motion(system, pair, scratch.stage, body_row(0), scratch.motion)
-    motion = motion_of(scratch)
+    motion = moving_pair(scratch.motion)
     packed = packed_pair(system, pair)
     o = pair_rates(system, pair)
     place = place_ahead(packed, before.place, s, read_four(rates, o))
@@ -110,7 +107,7 @@ def renew_rates(system, pair, state, rates, work, scratch):
     """A pair's rates at the start, but with the twists of the bodies in the scratch."""
     before = read_state(pointer(state, pair_row(system, pair)))
     write_motion(system, pair, scratch.stage, body_row(0), scratch.motion)
-    renewed = motion_of(scratch)
+    renewed = moving_pair(scratch.motion)
     motion = Motion(before.motion.pose, renewed.v, renewed.w)
     packed = packed_pair(system, pair)
     near, n, kept = near_contact(packed, before), before.normal, before.integrated
@@ -131,6 +128,44 @@ def bodies_rates(system, s, lost, rates, scratch):
         if kind_of(system, body) != FREE:
             given -= power(body, scratch.stage, o, scratch.loads)
     rates[R_LOST], rates[R_GIVEN] = lost, given
+    rates[R_SHARED] = scratch.loads[shared_row(system)]
+
+
+@kernel
+def touch_pairs(system, state, s, rates, work, scratch):
+    """The loads at a stage, of contacts and of a coupler; the power that contacts lose."""
+    clear_loads(system, scratch)
+    lost = 0.0
+    for k in range(n_visited(system, scratch)):
+        pair = visited(scratch, k)
+        if system.layout[I_INSIDE]:
+            lost += touch_ahead(system, pair, state, s, rates, work, scratch)
+        else:
+            lost += touch_tracked(system, pair, state, scratch.stage, body_row(0), scratch)
+    if coupled(system):
+        add_pull(system, state, scratch.stage, body_row(0), scratch.loads)
+    return lost
+
+
+@kernel
+def copy_rates(system, rates, source, target):
+    """Those of the pairs, which a stage that is loaded twice begins with."""
+    for k in range(pair_rates(system, 0), n_rates(system)):
+        rates[target + k] = rates[source + k]
+
+
+@kernel
+def load_stage(system, state, s, rates, work, scratch):
+    """`touch_pairs` with as much of the friction as a step bears."""
+    behind = n_rates(system)
+    copy_rates(system, rates, 0, behind)
+    begin_friction(system, scratch.loads)
+    lost = touch_pairs(system, state, s, rates, work, scratch)
+    if not ease_friction(system, scratch.loads):
+        return lost
+    state[S_EASED] += 1.0 if s == 0.0 else 0.0
+    copy_rates(system, rates, behind, 0)
+    return touch_pairs(system, state, s, rates, work, scratch)
 
 
 @kernel
@@ -140,16 +175,7 @@ def stage_of(system, state, s, held, rates, work, scratch):
     """
     lost = rates[R_LOST]
     if not held:
-        clear_loads(system, scratch)
-        lost = 0.0
-        for k in range(n_visited(system, scratch)):
-            pair = visited(scratch, k)
-            if system.layout[I_INSIDE]:
-                lost += touch_ahead(system, pair, state, s, rates, work, scratch)
-            else:
-                lost += touch_tracked(system, pair, state, scratch.stage, body_row(0), scratch)
-        if coupled(system):
-            add_pull(system, state, scratch.stage, body_row(0), scratch.loads)
+        lost = load_stage(system, state, s, rates, work, scratch)
     bodies_rates(system, s, lost, rates, scratch)
 
 

@@ -11,12 +11,14 @@ from standoff.kernels.dynamics.arrays import (
     FREE,
     I_COUPLER,
     I_SOLIDS,
+    N_EASED,
     N_LOAD,
     N_TOUCH,
     S_DEEPEST,
     S_TIME,
     S_UNCERTIFIED,
     STEP,
+    T_STORED,
     TOLD,
     TOLD_HEADER,
     Scratch,
@@ -30,6 +32,7 @@ from standoff.kernels.dynamics.arrays import (
     options_of,
     pair_row,
     polytope_row,
+    shared_row,
 )
 from standoff.kernels.dynamics.coupled_tool import (
     book_pull,
@@ -39,6 +42,7 @@ from standoff.kernels.dynamics.coupled_tool import (
     stored_in_coupler,
 )
 from standoff.kernels.dynamics.coupler import Moment, couple
+from standoff.kernels.dynamics.eased_friction import begin_friction, ease_friction
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
 from standoff.kernels.dynamics.near_arrays import n_visited, near_arrays, searches, visited
 from standoff.kernels.dynamics.near_pairs import catch_up, find_near
@@ -86,10 +90,10 @@ def scratch_for(system, told):
     rates = n_rates(system)
     return (
         np.zeros(body_row(rows)),
+        np.zeros(2 * rates),
         np.zeros(rates),
         np.zeros(rates),
-        np.zeros(rates),
-        np.zeros(N_LOAD * rows + 1),
+        np.zeros((N_LOAD + N_EASED) * rows + 1),
         np.zeros(N_MOTION),
         np.zeros(N_TOUCH * n_pairs(system) + 1),
         np.zeros(N_SPOTS),
@@ -199,21 +203,33 @@ def track_pairs(system, state, h, told, work, scratch):
 
 
 @kernel
-def account(system, state, row, scratch):
-    """Energies and contacts of a state, into a row of the accounts; and what its spots push."""
+def touch_all(system, state, row, scratch):
+    """The contacts of a state, into a row of the accounts; and what its spots push."""
     clear_loads(system, scratch)
     scratch.told[TOLD] = 0.0
+    row[A_STORED] = 0.0
+    for pair in range(n_pairs(system)):
+        touch_tracked(system, pair, state, state, body_row(0), scratch)
+        for k in range(N_TOUCH):
+            row[ACCOUNT_HEADER + N_TOUCH * pair + k] = scratch.touch[N_TOUCH * pair + k]
+        row[A_STORED] += scratch.touch[N_TOUCH * pair + T_STORED]
+
+
+@kernel
+def account(system, state, row, scratch, steps):
+    """Energies and contacts of a state, into a row of the accounts; and what its spots push, with
+    as much of the friction as is taken where our own steps go on from it.
+    """
     for k in range(ACCOUNT_HEADER):
         row[k] = 0.0
     for body in range(n_bodies(system)):
         if kind_of(system, body) == FREE:
             row[A_KINETIC] += kinetic(system, body, state, body_row(body))
             row[A_POTENTIAL] += potential(system, body, state, body_row(body))
-    for pair in range(n_pairs(system)):
-        touch_tracked(system, pair, state, state, body_row(0), scratch)
-        for k in range(N_TOUCH):
-            row[ACCOUNT_HEADER + N_TOUCH * pair + k] = scratch.touch[N_TOUCH * pair + k]
-        row[A_STORED] += scratch.touch[N_TOUCH * pair + 3]
+    begin_friction(system, scratch.loads)
+    touch_all(system, state, row, scratch)
+    if steps and ease_friction(system, scratch.loads):
+        touch_all(system, state, row, scratch)
     if coupled(system):
         row[ACCOUNT_HEADER + N_TOUCH * n_pairs(system)] = stored_in_coupler(system, state)
 
@@ -281,7 +297,7 @@ def run_system(packed, state, drives, every, records, told):
     begin_solids(system, state, work.counts, scratch)
     width = states.shape[1]  # all but what is kept beside it
     states[0, :] = state[:width]
-    account(system, state, accounts[0], scratch)
+    account(system, state, accounts[0], scratch, True)
     table, readings = drives
     for tick in range(every * (states.shape[0] - 1)):
         tick_bodies(system, state, h, (table, readings, np.nan), tick, work, scratch)
@@ -294,7 +310,7 @@ def run_system(packed, state, drives, every, records, told):
         if recorded:
             row = (tick + 1) // every
             states[row, :] = state[:width]
-            account(system, state, accounts[row], scratch)
+            account(system, state, accounts[row], scratch, True)
     keep_alive(arrays, near, counts, log)
     return -1, FINE
 
@@ -312,9 +328,9 @@ def load_system(packed, state, loads, row):
     """What contacts do to bodies at their places in a state, for methods that are not ours.
 
     The trackers go to the state's poses from where they are in it, in place. `loads` become those
-    of the bodies, N_LOAD numbers each, and then the power that the contacts lose and that driven
-    bodies give; `row` becomes the account of the state. Returns FINE, or why a pose or twist was
-    refused.
+    of the bodies, N_LOAD numbers each, then the power that the contacts lose, that driven bodies
+    give and that springs have by being shared; `row` becomes the account of the state. Returns
+    FINE, or why a pose or twist was refused.
     """
     system = system_of(packed)
     arrays, near = scratch_for(system, np.zeros(TOLD_HEADER)), near_arrays(system)
@@ -327,7 +343,7 @@ def load_system(packed, state, loads, row):
         why = track_pair(system, pair, state, system.numbers[STEP], work, scratch)
         if why != FINE:
             return why
-    account(system, state, row, scratch)
+    account(system, state, row, scratch, False)
     clear_loads(system, scratch)
     lost, given = 0.0, 0.0
     for pair in range(n_pairs(system)):
@@ -338,6 +354,6 @@ def load_system(packed, state, loads, row):
     end = N_LOAD * n_bodies(system)
     for k in range(end):
         loads[k] = scratch.loads[k]
-    loads[end], loads[end + 1] = lost, given
+    loads[end], loads[end + 1], loads[end + 2] = lost, given, scratch.loads[shared_row(system)]
     keep_alive(arrays, near, counts, log)
     return FINE
