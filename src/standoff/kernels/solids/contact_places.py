@@ -70,12 +70,13 @@ MOST_SPRINGS = 4.0
 # What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
 # whether there was no room or time for some; how many that were felt ended in this frame without
 # coming to 0; how many spots; how many of an earlier frame are kept, and for how many frames there
-# were none since; what B moved in each of the last frames, in turn; then the store of the front,
-# its branches, the places, the spots, those of the last frame before that had some, and the front's
+# were none since; what B moved in each of the last frames, in turn; up to which length places were
+# looked for, where that grows; then the store of the front, its branches, the places, the spots, those of the last frame before that had some, and the front's
 # rows with how long they rest.
 F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS = 0, 1, 13, 14, 15, 16
 F_EARLIER, F_NONE_FOR, F_STEPS = 17, 18, 19
-F_STORE = F_STEPS + MOST_RETRIED_IN
+F_ABOVE = F_STEPS + MOST_RETRIED_IN
+F_STORE = F_ABOVE + 1
 F_BRANCHES = F_STORE + STORE_REALS
 F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
 F_SPOT = F_AT + PLACE_REALS * MOST_PLACES
