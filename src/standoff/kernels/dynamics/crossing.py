@@ -32,7 +32,6 @@ from standoff.kernels.dynamics.arrays import (
     pair_numbers,
     pair_row,
 )
-from standoff.kernels.dynamics.near_arrays import searches
 from standoff.kernels.dynamics.pair_motion import packed_pair
 from standoff.kernels.state.arrays import (
     DISTANCE,
@@ -140,12 +139,12 @@ def may_cross(system, pair, state, begun, of_solids, scratch):
 
 @kernel
 def begin_crossing(system, pair, state, of_solids):
-    """The `End` at the start of a tick, from the answer before it."""
+    """The `End` at the start of a tick, from the answer before it: of a pair that was not visited
+    its bound is an old one, but it is beyond its horizon."""
     begun = end_of(system, pair, state, of_solids)
-    if not begun.parted and searches(system):
-        # a bound of a pair that was not visited is an old one
-        return End(min(begun.gap, options_of(system, pair).within), False, begun.normal)
-    return begun
+    if begun.parted or of_solids:
+        return begun
+    return End(min(begun.gap, options_of(system, pair).within), False, begun.normal)
 
 
 @kernel

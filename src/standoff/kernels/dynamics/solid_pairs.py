@@ -192,7 +192,7 @@ def find_places(system, pair, state, counts, scratch):
     for k in range(N_COUNT_SLOTS):
         counts[k] = 0
     span = system.numbers[pair_numbers(system, pair) + P_SPAN]
-    choices = Choices(span, 0.0, MOST_RETRIED_IN, kept_rows(system, pair))
+    choices = Choices(span, 0.0, MOST_RETRIED_IN, kept_rows(system, pair), best[ABOVE])
     both = both_of(system, pair, pose)
     look_deeper(both.b, kept, best)
     contact_frame(both, kept, choices, best, counts)

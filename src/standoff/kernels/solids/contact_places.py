@@ -12,8 +12,8 @@ they too came from above 0: each has a spring of its own.
 from math import sqrt
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
+from standoff.kernels.algebra.rigid import read_rotation, read_vector
+from standoff.kernels.algebra.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids.contact_ends import is_straight
 from standoff.kernels.solids.contact_front import CONTACT_REALS, MOST_RETRIED_IN
@@ -87,14 +87,15 @@ KEPT_REALS = F_ROWS + CONTACT_REALS * MOST_ROWS
 
 class Asked(NamedTuple):
     """Of a frame, lengths: what B has moved in it and the last ones, at most, in which a place that
-    is found now was not looked for; how deep a place may be that is felt in a frame without one
-    before; within which distance spots share a spring; and how much of the length up to which
-    places are looked for is for their patches alone."""
+    is found now was not looked for; how deep a place may be that is felt though nobody knows where
+    it has come from; within which distance spots share a spring; and how much of the length up to
+    which places are looked for is for their patches alone. And B's pose."""
 
     step: Any
     deepest: Any
     span: Any
     wider: Any
+    pose: Any
 
 
 @kernel
@@ -157,12 +158,25 @@ def jump_of(asked, size):
 
 
 @kernel
+def came_in(kept, minima, o, d, asked):
+    """Was a pair of points in overlap hardly deeper than `asked.deepest`, or apart, along their
+    normal in the frame before? In a long step B leaves the far side of what it comes to by as
+    much, which no motion has pressed."""
+    if d >= -asked.deepest:
+        return True
+    y = read_vector(minima, o + POINTS + 3)
+    own = rotate_back(asked.pose.R, sub(y, asked.pose.p))
+    before = add(rotate(read_rotation(kept, F_POSE), own), read_vector(kept, F_POSE + 9))
+    return d - dot(normal_of(minima, o), sub(y, before)) >= -asked.deepest
+
+
+@kernel
 def is_felt(kept, minima, o, d, asked, size):
     """Is a minimum of the signed distance felt, by the places of the frame before?"""
     if kept[F_MADE] == 0.0:
         return d >= -asked.deepest
     step = jump_of(asked, size)
-    if d >= -step:
+    if d >= -step and came_in(kept, minima, o, d, asked):
         return True
     return was_felt(kept, minima, o, d, branch_reach(size, asked.step), step)
 
