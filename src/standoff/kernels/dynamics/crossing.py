@@ -11,11 +11,11 @@ either has moved counts, in any direction.
 from math import sqrt
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.rigid import read_vector
+from standoff.kernels.algebra.rigid import read_vector, relative_pose
 from standoff.kernels.algebra.turns import turn_norm
 from standoff.kernels.algebra.vectors import axpy, dot, norm, sub
 from standoff.kernels.body.layout import UNBOUNDED
-from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.compiler.decorators import kernel, pointer
 from standoff.kernels.dynamics.arrays import (
     B_REACH,
     N_BODY,
@@ -32,7 +32,8 @@ from standoff.kernels.dynamics.arrays import (
     pair_numbers,
     pair_row,
 )
-from standoff.kernels.dynamics.pair_motion import packed_pair
+from standoff.kernels.dynamics.pair_motion import packed_pair, write_motion
+from standoff.kernels.pair.far import boxes_apart
 from standoff.kernels.state.arrays import (
     DISTANCE,
     FAR,
@@ -40,6 +41,8 @@ from standoff.kernels.state.arrays import (
     N_STATE,
     NORMAL,
     NOT_CERTIFIED,
+    POSE_A,
+    POSE_B,
     STATUS,
 )
 
@@ -111,22 +114,40 @@ def nearest_centres(rows, a, b, shift):
 
 
 @kernel
+def boxes_at(system, pair, rows, scratch):
+    """How far the boxes of two bodies prove them apart where they were."""
+    m = scratch.motion
+    write_motion(system, pair, rows, body_row(0), m)
+    return boxes_apart(
+        packed_pair(system, pair), relative_pose(pointer(m, POSE_A), pointer(m, POSE_B))
+    )
+
+
+@kernel
+def has_plane(system, pair):
+    """Is one of two convex bodies a half-space?"""
+    packed = packed_pair(system, pair)
+    return packed.ints_a[UNBOUNDED] != 0 or packed.ints_b[UNBOUNDED] != 0
+
+
+@kernel
 def may_cross(system, pair, state, begun, of_solids, scratch):
     """May a tick have hidden a depth of two bodies beyond what is allowed? `begun` is the `End` at
     its start."""
     a, b = bodies_of(system, pair)
-    ways, rows, most = scratch.ways, scratch.stage, system.numbers[pair_numbers(system, pair) + P_UNSEEN]
-    way = ways[N_WAY * a] + ways[N_WAY * b]
+    ways, rows, o = scratch.ways, scratch.stage, pair_numbers(system, pair)
+    way, most = ways[N_WAY * a] + ways[N_WAY * b], system.numbers[o + P_UNSEEN]
     ended = end_of(system, pair, state, of_solids)
-    gaps = begun.gap + ended.gap
-    if way <= gaps + 2.0 * most:
+    gap = begun.gap
+    if way <= gap + ended.gap + 2.0 * most:
         return False
-    if gaps == 0.0 and dot(begun.normal, ended.normal) > 0.0:
+    if gap + ended.gap == 0.0 and dot(begun.normal, ended.normal) > 0.0:
         return False  # they touch all the time, from one side
-    if not of_solids:
-        packed = packed_pair(system, pair)
-        if packed.ints_a[UNBOUNDED] != 0 or packed.ints_b[UNBOUNDED] != 0:
-            return False  # there is no other side
+    if not (of_solids or begun.parted):
+        gap = max(gap, boxes_at(system, pair, rows, scratch))
+    if way <= gap + ended.gap + 2.0 * most or (not of_solids and has_plane(system, pair)):
+        return False  # or there is no other side
+    begun = End(gap, begun.parted, begun.normal)
     shift = sub(centre_gone(state, rows, b), centre_gone(state, rows, a))
     turns = ways[N_WAY * a + 1] + ways[N_WAY * b + 1]
     if unseen(begun, -dot(begun.normal, shift), turns, way) <= most:
