@@ -1,4 +1,4 @@
-"""Ticks in which a body may go through another one, or deep into it and out again, are counted."""
+"""Ticks in which a body may go through another one, or deep into it and out, are counted."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from draws import draws
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from draws import draws
 from standoff import simulation as sim
 from standoff.solids import Solid
 
@@ -54,7 +54,7 @@ def test_what_goes_through_a_plate_is_counted(options: dict[str, Any]) -> None:
 
 
 def test_solids_look_as_far_as_they_move() -> None:
-    """What a solid has moved into in a tick is found, however deep, and pushes: on no other side."""
+    """What a solid has moved into in a tick is found, however deep, and pushes from one side."""
     run = shot(Solid(BALL), Solid(PLATE))
     assert run.distances[3, 0] > 0.0
     assert run.deepest == pytest.approx(0.42, abs=0.01)
@@ -127,8 +127,8 @@ SAMPLES = 200
 
 
 def test_no_depth_within_a_tick_is_hidden(rng: np.random.Generator) -> None:
-    """Free flights of one tick, sampled: where the bodies were deeper in each other than the contact
-    is meant for, either its end tells of it or the count does."""
+    """Free flights of one tick, sampled: where the bodies were deeper in each other than the
+    contact is meant for, either its end tells of it or the count does."""
     hidden = counted = 0
     for _ in range(draws(400)):
         a, b = (SHAPES[k] for k in rng.integers(len(SHAPES), size=2))

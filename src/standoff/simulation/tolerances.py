@@ -74,5 +74,6 @@ takes them, so that the bound of a pair that it leaves out exceeds the horizon a
 may miss being orthonormal by 1e-9 (``kernels.tolerances.ROTATION``) and lengths are rounded."""
 
 UNSEEN_PART: Final = 0.25
-"""Part of the least side of the box around the thinner of two bodies: how deep a tick may have hidden
-them in each other, at most, before it is counted; to cross it a body is in it by half of that side."""
+"""Part of the least side of the box around the thinner of two bodies: how deep a tick may have
+hidden them in each other, at most, before it is counted; who crosses it is in it by half of that
+side."""

@@ -2,8 +2,8 @@
 no contact at its end tells of it.
 
 Between its ends a tick is taken for what it stands for: each body's centre goes straight, and it
-turns about one axis by less than half a turn. Two convex bodies that a plane parts, or parts but for
-a contact's depth, stay on their sides of it while neither has gone far enough across it; so the
+turns about one axis by less than half a turn. Two convex bodies that a plane parts, or parts but
+for a contact's depth, stay on their sides of it while neither has gone far enough across it; so the
 plane of either end is a proof for the whole tick. Solids that are apart have no such plane: what
 either has moved counts, in any direction.
 """

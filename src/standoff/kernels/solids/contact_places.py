@@ -71,8 +71,8 @@ MOST_SPRINGS = 4.0
 # whether there was no room or time for some; how many that were felt ended in this frame without
 # coming to 0; how many spots; how many of an earlier frame are kept, and for how many frames there
 # were none since; what B moved in each of the last frames, in turn; up to which length places were
-# looked for, where that grows; then the store of the front, its branches, the places, the spots, those of the last frame before that had some, and the front's
-# rows with how long they rest.
+# looked for, where that grows; then the store of the front, its branches, the places, the spots,
+# those of the last frame before that had some, and the front's rows with how long they rest.
 F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS = 0, 1, 13, 14, 15, 16
 F_EARLIER, F_NONE_FOR, F_STEPS = 17, 18, 19
 F_ABOVE = F_STEPS + MOST_RETRIED_IN

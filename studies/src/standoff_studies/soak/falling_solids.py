@@ -11,6 +11,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -24,7 +25,7 @@ from standoff.solids import distance
 from standoff.solids.spatial.solid import Solid
 from standoff_studies.soak import blocks, solid_parts
 from standoff_studies.soak.solid_corners import Case, at, deepest, samples
-from standoff_studies.soak.solid_outlines import Arc, Array, Outline, Segment
+from standoff_studies.soak.solid_outlines import Arc, Array, Outline, Segment, polygon
 from standoff_studies.soak.solid_parts import Part
 from standoff_studies.soak.solid_truth import Turned
 
@@ -32,6 +33,8 @@ STRETCH, TICKS = 100, 8_000
 """Ticks from one sample to the next, and of a drop."""
 STEP, STIFFNESS, DEPTH = 5e-5, 1e5, 1e-4
 """Of the contact: s, N/m^1.5, and for how deep it is meant, m."""
+MOST_GAINED = 0.01
+"""Of a drop's energy: a rise of its balance that is counted."""
 CAP = np.radians(70.0)
 DENSITY, GRAVITY = 2700.0, 9.81
 TURNED_UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -54,16 +57,15 @@ def _half_ball(radius: float) -> Part:
 
 
 def _cone(radius: float, high: float) -> Part:
-    sides = solid_parts._chain((0, -0.5 * high), (radius, -0.5 * high), (0, 0.5 * high))
-    body = so.shapes.cone(radius, high)
-    return Part("cone", body, Turned(Outline(sides, [Segment(sides[-1].q, sides[0].p)])))
+    *sides, axis = polygon((0, -0.5 * high), (radius, -0.5 * high), (0, 0.5 * high))
+    return Part("cone", so.shapes.cone(radius, high), Turned(Outline(sides, [axis])))
 
 
 def _bowl(radius: float, wide: float) -> Part:
     """A round block with a hollow of 70 degrees on each side of the axis, open upwards."""
     rim, top = radius * np.sin(CAP), radius * (1.0 - np.cos(CAP))
     points = np.array([[rim, top], [wide, top], [wide, -0.03], [0.0, -0.03]])
-    sides = [Segment(p, q) for p, q in zip(points[:-1], points[1:], strict=True)]
+    sides = [Segment(p, q) for p, q in pairwise(points)]
     hollow = Arc(np.array([0.0, radius]), radius, -0.5 * np.pi, CAP - 0.5 * np.pi)
     profile = Outline([hollow, *sides], [Segment(points[-1], np.zeros(2))])
     edges = [solid_parts.circle(rho, z) for rho, z in points[:3]]
@@ -71,7 +73,7 @@ def _bowl(radius: float, wide: float) -> Part:
     faces = [Face((Sphere(down, [0.0, 0.0, radius]),), ((0, 1),))]
     for k, piece in enumerate(sides):
         loop = tuple((j, 1) for j in (k, k + 1) if j < len(edges))
-        faces.append(Face((solid_parts._quadric(piece.p, piece.q),), loop))
+        faces.append(Face((solid_parts.quadric(piece.p, piece.q),), loop))
     return Part("bowl", Boundary.from_brep(edges=edges, faces=faces), Turned(profile))
 
 
@@ -169,18 +171,14 @@ def judged_drop(number: int, seed: int, ticks: int = TICKS) -> tuple[Verdict, li
         deep.append(deepest(case, spots, state.pose(0), state.pose(1)))
     balance: Array = run.energy.balance
     gained = float(balance.max() - balance[0]) / energy
-    verdict = Verdict(
-        1, int(max(deep) > most), run.uncertified, run.jumps, sum(each.ticks for each in run.crossings),
-        int(gained > 0.01), time.perf_counter() - begun,
-    )  # fmt: skip
+    crossed = sum(each.ticks for each in run.crossings)
+    told = run.uncertified, run.jumps, crossed, int(gained > MOST_GAINED)
+    verdict = Verdict(1, int(max(deep) > most), *told, time.perf_counter() - begun)
     where = f"seed {seed}, block {number}, {' in '.join(SCENES[number % len(SCENES)])}"
-    told = f"{run.uncertified} not certified, {run.jumps} ended deep, energy {100 * gained:+.2f} %"
-    lines = []
+    faults = f"{told[0]} not certified, {told[1]} ended deep, energy {gained:+.2%}"
     if verdict.fell:
-        lines.append(f"{where}: a point is {1e3 * max(deep):.2f} mm deep, told {told}")
-    elif verdict.gained or verdict.jumps or verdict.uncertified:
-        lines.append(f"{where}: {told}")
-    return verdict, lines
+        return verdict, [f"{where}: a point is {1e3 * max(deep):.2f} mm deep; {faults}"]
+    return verdict, [f"{where}: {faults}"] if any(told) else []
 
 
 def main() -> int:
