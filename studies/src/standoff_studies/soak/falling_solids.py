@@ -49,7 +49,7 @@ def _half_ball(radius: float) -> Part:
         [Segment(np.array([0.0, radius]), np.array([0.0, low]))],
     )  # fmt: skip
     faces = [
-        Face((Plane.through([0.0, 0.0, low], *np.eye(3)[:2]),), ((0, 1),)),
+        Face((Plane.through(np.array([0.0, 0.0, low]), *np.eye(3)[:2]),), ((0, 1),)),
         Face((Sphere(radius * np.eye(3), np.zeros(3)),), ((0, 1),)),
     ]
     edges = [solid_parts.circle(rim, low)]
@@ -70,7 +70,7 @@ def _bowl(radius: float, wide: float) -> Part:
     profile = Outline([hollow, *sides], [Segment(points[-1], np.zeros(2))])
     edges = [solid_parts.circle(rho, z) for rho, z in points[:3]]
     down = radius * np.diag([1.0, 1.0, -1.0])
-    faces = [Face((Sphere(down, [0.0, 0.0, radius]),), ((0, 1),))]
+    faces = [Face((Sphere(down, np.array([0.0, 0.0, radius])),), ((0, 1),))]
     for k, piece in enumerate(sides):
         loop = tuple((j, 1) for j in (k, k + 1) if j < len(edges))
         faces.append(Face((solid_parts.quadric(piece.p, piece.q),), loop))
