@@ -4,8 +4,8 @@ contact is pressed."""
 from __future__ import annotations
 
 import pytest
-from shares import only
 
+from shares import only
 from standoff_studies.soak import falling_solids
 from standoff_studies.soak.falling_solids import SCENES, judged_drop
 
