@@ -15,7 +15,7 @@ from standoff.kernels.algebra.rigid import read_vector, relative_pose
 from standoff.kernels.algebra.turns import turn_norm
 from standoff.kernels.algebra.vectors import axpy, dot, norm, sub
 from standoff.kernels.body.layout import UNBOUNDED
-from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, kernel, pointer, shared
 from standoff.kernels.dynamics.arrays import (
     B_REACH,
     N_BODY,
@@ -28,7 +28,6 @@ from standoff.kernels.dynamics.arrays import (
     body_row,
     crossings_row,
     n_bodies,
-    options_of,
     pair_numbers,
     pair_row,
 )
@@ -38,9 +37,11 @@ from standoff.kernels.state.arrays import (
     DISTANCE,
     FAR,
     LOWER_BOUND,
+    N_OPTIONS,
     N_STATE,
     NORMAL,
     NOT_CERTIFIED,
+    O_WITHIN,
     POSE_A,
     POSE_B,
     STATUS,
@@ -165,10 +166,19 @@ def begin_crossing(system, pair, state, of_solids):
     begun = end_of(system, pair, state, of_solids)
     if begun.parted or of_solids:
         return begun
-    return End(min(begun.gap, options_of(system, pair).within), False, begun.normal)
+    within = ahead(system.options, N_OPTIONS * pair)[O_WITHIN]
+    return End(min(begun.gap, within), False, begun.normal)
 
 
 @kernel
+def goes_far_enough(system, pair, begun, scratch):
+    """Could a pair have crossed by what its bodies have gone in a tick, however they stand now?"""
+    a, b = bodies_of(system, pair)
+    most = system.numbers[pair_numbers(system, pair) + P_UNSEEN]
+    return scratch.ways[N_WAY * a] + scratch.ways[N_WAY * b] > begun.gap + 2.0 * most
+
+
+@shared
 def book_crossing(system, pair, state, begun, of_solids, scratch):
     """Count a tick in which a pair's bodies may have crossed, and keep when the first one ended. An
     answer that is not sound is counted as that."""

@@ -39,7 +39,12 @@ from standoff.kernels.dynamics.coupled_tool import (
     stored_in_coupler,
 )
 from standoff.kernels.dynamics.coupler import Moment, couple
-from standoff.kernels.dynamics.crossing import N_WAY, begin_crossing, book_crossing
+from standoff.kernels.dynamics.crossing import (
+    N_WAY,
+    begin_crossing,
+    book_crossing,
+    goes_far_enough,
+)
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
 from standoff.kernels.dynamics.near_arrays import n_visited, near_arrays, searches, visited
 from standoff.kernels.dynamics.near_pairs import catch_up, find_near
@@ -200,7 +205,8 @@ def track_pairs(system, state, h, told, work, scratch):
         why = track_pair(system, pair, state, h, work, scratch)
         if why != FINE:
             return why
-        book_crossing(system, pair, state, begun, of_solids, scratch)
+        if goes_far_enough(system, pair, begun, scratch):
+            book_crossing(system, pair, state, begun, of_solids, scratch)
     return FINE
 
 
