@@ -47,7 +47,8 @@ def run_simulate(command: SimulateCommand) -> int:
         tell(json_text(facts | {"files": [str(path) for path in files]}))
     else:
         tell("\n".join(_lines(scene, run, list(files))))
-    return ExitCode.DONE if run.uncertified == 0 else ExitCode.NOT_CERTIFIED
+    sound = run.uncertified == 0 and not run.crossings
+    return ExitCode.DONE if sound else ExitCode.NOT_CERTIFIED
 
 
 def _files(
@@ -97,6 +98,7 @@ def _facts(scene: SimulationScene, run: SystemRun) -> dict[str, Any]:
         "uncertified": run.uncertified,
         "ended_deep": run.jumps,
         "eased": run.eased,
+        "crossings": {scene.pair_name(k): [time, n] for k, time, n in run.crossings},
     }
 
 
@@ -152,6 +154,10 @@ def _lines(scene: SimulationScene, run: SystemRun, written: list[Path]) -> list[
     lines += _energy_lines(run, unit)
     lines.append(line("deepest", f"{run.deepest + 0.0:.6g} {unit.length}"))
     lines += _certified_lines(run)
+    lines += [
+        line("crossed?", f"{scene.pair_name(k)} in {counted(n, 'tick')}, first at {time:g} s")
+        for k, time, n in run.crossings
+    ]
     return [*lines, *(line("wrote", str(path)) for path in written)]
 
 

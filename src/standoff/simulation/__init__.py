@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from standoff.simulation.solid_places import ContactPlace, ContactSpot, SolidContact
     from standoff.simulation.system import System
     from standoff.simulation.system_run import SystemRun
-    from standoff.simulation.system_state import Energy, SystemState
+    from standoff.simulation.system_state import Crossing, Energy, SystemState
     from standoff.simulation.wrench import Wrench
 else:
     __getattr__, __dir__ = on_demand(
@@ -83,7 +83,7 @@ else:
             ),
             "standoff.simulation.system": ("System",),
             "standoff.simulation.system_run": ("SystemRun",),
-            "standoff.simulation.system_state": ("Energy", "SystemState"),
+            "standoff.simulation.system_state": ("Crossing", "Energy", "SystemState"),
             "standoff.simulation.wrench": ("Wrench",),
         },
     )
@@ -94,6 +94,7 @@ __all__ = [
     "CouplerCounts",
     "CouplerRun",
     "CouplerState",
+    "Crossing",
     "Device",
     "DeviceLimits",
     "DeviceReading",

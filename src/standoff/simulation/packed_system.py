@@ -14,7 +14,7 @@ from standoff.simulation.flat_parts import pack_flat_parts
 from standoff.simulation.near_pairs import NearRows
 from standoff.simulation.rigid_body import DRIVEN, FREE, RigidBody
 from standoff.simulation.solid_parts import pack_solids, pair_numbers, room_for_rows
-from standoff.simulation.system import System
+from standoff.simulation.system import System, farthest, unseen_depth
 from standoff.simulation.system_state import state_length
 from standoff.solids.spatial.solid_model import SolidModel
 
@@ -57,7 +57,7 @@ def pack_system(
         column += body.kind == DRIVEN
         at = flats_at + len(flat_rows)
         layout += [KINDS[body.kind], int(starts[0][number]), int(starts[1][number]), driven, at, 0]
-        numbers += _mass_row(body)
+        numbers += [*_mass_row(body), farthest(body)]
         rows, found = pack_flat_parts(system.flats[number], numbers_at + len(flat_numbers))
         flat_rows += rows
         flat_numbers += found
@@ -111,7 +111,7 @@ def _pair_rows(system: System) -> tuple[list[int], list[float]]:
         models = system.pair_models(number)
         rows += [*pair, starts[number] if met else -1, room_for_rows(models)]
         numbers += [contact.stiffness, contact.damping, contact.friction, contact.slip_speed]
-        numbers += pair_numbers(models, system.depth(number))
+        numbers += [*pair_numbers(models, system.depth(number)), unseen_depth(system, number)]
     return rows, numbers
 
 
@@ -140,7 +140,7 @@ def ticks_a_reading(system: System, dt: float) -> int:
 def _mass_row(body: RigidBody) -> list[float]:
     mass = body.mass_properties
     if mass is None:
-        return [0.0] * K.REAL_BODY
+        return [0.0] * K.B_REACH
     inverse = np.linalg.inv(mass.inertia)
     return [mass.mass, *mass.centre, *mass.inertia.ravel(), *inverse.ravel()]
 

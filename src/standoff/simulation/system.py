@@ -28,6 +28,7 @@ from standoff.simulation.solid_parts import (
     kept_length,
     room_for_rows,
 )
+from standoff.simulation.tolerances import UNSEEN_PART
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.inputs import check_pair
 
@@ -238,15 +239,28 @@ class System(KeepsReadOnly):
 
 
 def farthest(body: RigidBody) -> float:
-    """A bound on how far a free body reaches from its centre of mass, length."""
+    """A bound on how far a body reaches from its centre of mass, of one that is not free from its
+    origin, length; 0 for a half-space."""
     mass = body.mass_properties
-    assert mass is not None
+    centre = mass.centre if mass is not None and body.kind == FREE else np.zeros(3)
+    middle, half = _box(body)
+    corner = np.abs(middle - centre) + half
+    return float(np.linalg.norm(corner)) if np.isfinite(corner).all() else 0.0
+
+
+def unseen_depth(system: System, pair: int) -> float:
+    """How deep a tick may have hidden two bodies in each other before it is counted, length: the
+    depth that their contact is meant for, or a part of what is thinner."""
+    thinnest = min(2.0 * float(_box(system.bodies[k])[1].min()) for k in system.pairs[pair])
+    return min(system.depth(pair), UNSEEN_PART * thinnest)
+
+
+def _box(body: RigidBody) -> tuple[Array, Array]:
+    """Centre and half the sides of the box around a body, its frame."""
     shape = body.body.boundary if isinstance(body.body, SolidModel) else body.body
-    reals = shape.reals
-    middle = reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
-    half = reals[L.BOX_HALF : L.BOX_HALF + 3]
-    corner = np.abs(middle - mass.centre) + half
-    return float(np.linalg.norm(corner)) + (shape.radius if isinstance(shape, Body) else 0.0)
+    swept = shape.radius if isinstance(shape, Body) else 0.0
+    half = shape.reals[L.BOX_HALF : L.BOX_HALF + 3] + swept
+    return shape.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3], half
 
 
 def _tool(coupler: Any, tool: Any, bodies: tuple[RigidBody, ...]) -> int | None:

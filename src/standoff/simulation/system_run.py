@@ -16,7 +16,7 @@ from standoff.simulation import system_state as S
 from standoff.simulation.coupler_run import CouplerRun, coupler_run
 from standoff.simulation.pair_contacts import ContactRows, PairContact, pair_contacts
 from standoff.simulation.system import System
-from standoff.simulation.system_state import Energy, SystemState
+from standoff.simulation.system_state import Crossing, Energy, SystemState
 from standoff.tracking.rows import AnswerRows
 
 Array = NDArray[np.float64]
@@ -158,6 +158,11 @@ class SystemRun(KeepsReadOnly):
     def uncertified(self) -> int:
         """As of the last state: `SystemState.uncertified`."""
         return self.final.uncertified
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """As of the last state: `SystemState.crossings`."""
+        return self.final.crossings
 
     @property
     def jumps(self) -> int:

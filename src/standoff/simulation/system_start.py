@@ -62,10 +62,10 @@ def _start_of(still: SystemState, number: int, law: Law, dt: float) -> Array:
     models = still.system.pair_models(number)
     if models:
         told = spatial_distance(*models, still.pose(a), still.pose(b))
-        return np.concatenate([np.zeros(T.N_STATE), _row_of(told)])
+        return np.concatenate([np.zeros(T.N_STATE), _row_of(told), np.zeros(2)])
     tracker = Tracker(*still.system.convex_pair(number), dt, law)
     found = tracker.start(still.pose(a), still.pose(b), still.twist(a), still.twist(b))
-    return np.concatenate([found.data, found.proximity.row])
+    return np.concatenate([found.data, found.proximity.row, np.zeros(2)])
 
 
 def _row_of(told: SolidProximity) -> Array:

@@ -62,6 +62,24 @@ class Energy(NamedTuple):
         return self.mechanical + self.dissipated - self.supplied - self.shared
 
 
+class Crossing(NamedTuple):
+    """A pair whose bodies may have crossed within a tick, unseen by the contact at its ends.
+
+    Attributes
+    ----------
+    pair : int
+        Its number.
+    time : float
+        When the first such tick ended [time].
+    ticks : int
+        How many there were since the start.
+    """
+
+    pair: int
+    time: float
+    ticks: int
+
+
 @dataclass(frozen=True, eq=False)
 class SystemState(KeepsReadOnly):
     """A system at an instant: goes into a run and comes out of it, never changed.
@@ -121,6 +139,15 @@ class SystemState(KeepsReadOnly):
     def uncertified(self) -> int:
         """How many answers of the trackers since the start were not certified."""
         return int(self.data[K.S_UNCERTIFIED])
+
+    @property
+    def crossings(self) -> tuple[Crossing, ...]:
+        """The pairs whose bodies may have crossed within a tick since the start: they moved farther
+        in it than both gaps prove them apart, and no contact at its end tells of it. Take a shorter
+        step, or a stiffer contact."""
+        counts = _pair_rows(self.system, self.data[None])[0, :, -2:]
+        found = np.flatnonzero(counts[:, 0])
+        return tuple(Crossing(int(k), float(counts[k, 1]), int(counts[k, 0])) for k in found)
 
     @property
     def jumps(self) -> int:
@@ -246,11 +273,15 @@ def momenta(body: int, rows: Array) -> Array:
     return _part(body, rows, K.X_SPIN)
 
 
+def _pair_rows(system: System, rows: Array) -> Array:
+    """(n, pairs, N_PAIR) of rows of states."""
+    at = K.STATE_HEADER + K.N_BODY * len(system.bodies)
+    return rows[:, at : coupler_at(system)].reshape(len(rows), len(system.pairs), K.N_PAIR)
+
+
 def answers(system: System, rows: Array) -> Array:
     """(n, pairs, N_OUT) answers of the trackers."""
-    at = K.STATE_HEADER + K.N_BODY * len(system.bodies)
-    both = rows[:, at : coupler_at(system)].reshape(len(rows), len(system.pairs), K.N_PAIR)
-    return both[:, :, T.N_STATE :]
+    return _pair_rows(system, rows)[:, :, T.N_STATE : T.N_STATE + T.N_OUT]
 
 
 def distances(system: System, rows: Array) -> Array:

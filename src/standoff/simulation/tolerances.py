@@ -72,3 +72,8 @@ BALL_SLACK: Final = 1e-6
 """Relative, of the radius of a ball and of the horizon: how much greater the search for near pairs
 takes them, so that the bound of a pair that it leaves out exceeds the horizon although a rotation
 may miss being orthonormal by 1e-9 (``kernels.tolerances.ROTATION``) and lengths are rounded."""
+
+UNSEEN_PART: Final = 0.25
+"""Part of the least side of the box around the thinner of two bodies: how deep a tick may have
+hidden them in each other, at most, before it is counted; who crosses it is in it by half of that
+side."""

@@ -41,13 +41,15 @@ INT_PAIR = 4
 GRAVITY, STEP = 0, 3
 REAL_HEADER = 4
 B_MASS, B_CENTRE, B_INERTIA, B_INVERSE = 0, 1, 4, 13  # centre and inertia in the body's axes
-REAL_BODY = 22
+B_REACH = 22  # from its centre, or of a body that is not free its origin, to its farthest point
+REAL_BODY = 23
 # A pair: its contact, then what a pair of solids is asked: the depth it is meant for, the sizes of
 # both, the tolerance, lengths, the part of the sizes and distances that is for rounding, and within
-# which length spots share a spring.
+# which length spots share a spring; and how deep a tick may have hidden the bodies in each other
+# before it is counted.
 P_STIFFNESS, P_DAMPING, P_FRICTION, P_SLIP, P_DEPTH, P_SIZE, P_TOLERANCE, P_ROUNDING = range(8)
-P_SPAN = 8
-REAL_PAIR = 9
+P_SPAN, P_UNSEEN = 8, 9
+REAL_PAIR = 10
 
 # The state: time, energy lost in contacts, energy that driven bodies and a coupler gave, the
 # greatest depth so far, ticks with a pair that was not certified, places of contact of solids that
@@ -58,7 +60,9 @@ S_TIME, S_LOST, S_GIVEN, S_DEEPEST, S_UNCERTIFIED, S_JUMPS, S_SHARED, S_EASED = 
 STATE_HEADER = 8
 X_ROTATION, X_CENTRE, X_VELOCITY, X_SPIN = 0, 9, 12, 15
 N_BODY = 18
-N_PAIR = N_STATE + N_OUT
+# A pair: its tracker's state, its answer, ticks in which its bodies may have crossed, and when the
+# first of them ended.
+N_PAIR = N_STATE + N_OUT + 2
 
 # Rates of the state: of the energies lost, given and shared; a body's turn (body axes), velocity,
 # acceleration and torque; a pair's four parameters.
@@ -117,7 +121,7 @@ class System(NamedTuple):
 class Scratch(NamedTuple):
     """What one tick writes over: pointers, but for the two arrays."""
 
-    stage: Any  # array: rows of the bodies at a stage, as a state has them
+    stage: Any  # array: rows of the bodies at a stage, as a state has them; then at the start
     rates: Any  # of one stage, and behind them as they were when it began
     total: Any  # of the whole step
     first: Any  # of its first stage
@@ -128,6 +132,7 @@ class Scratch(NamedTuple):
     told: Any  # what spots push, where there is room for it
     change: Any  # N_CHANGE numbers of the pair whose frame it is
     polytope: Any  # of a pair that keeps none
+    ways: Any  # how far each body has gone (``crossing``)
     contact: Any  # what a frame of two solids fills (``solid_pairs``)
     near: Any  # integers of the search for near pairs, and what it finds (``near_arrays``)
     near_numbers: Any  # and its numbers
@@ -204,6 +209,12 @@ def eased_row(system, body):
 def shared_row(system):
     """Where what sharing gives stands among the loads."""
     return eased_row(system, n_bodies(system))
+
+
+@kernel
+def crossings_row(system, pair):
+    """Where the count of ticks stands in which a pair's bodies may have crossed."""
+    return pair_row(system, pair) + N_STATE + N_OUT
 
 
 @kernel

@@ -152,9 +152,20 @@ def visit_both(old, now, scratch):
 
 
 @kernel
+def goes_far(system, near):
+    """Has a body gone farther than all horizons? It may have crossed one that is beyond them at
+    both ends of the tick."""
+    for body in range(n_bodies(system)):
+        if near.planes[body] == 0 and near.ways[body] > near.reach:
+            return True
+    return False
+
+
+@kernel
 def find_near(system, state, scratch):
     """Which pairs this tick visits, where bodies are at its end: into the scratch. True where it
-    must visit all, in the first tick and where a motion is one that a frame may refuse."""
+    must visit all, in the first tick, where a motion is one that a frame may refuse, and where a
+    body goes far."""
     near = near_of(system, scratch)
     if scratch.near[G_MADE] == 0:
         for body in range(n_bodies(system)):
@@ -180,7 +191,7 @@ def find_near(system, state, scratch):
             order_anew(near, scratch)
         old, now = search(system, near, scratch)
     visit_both(old, now, scratch)
-    return False
+    return goes_far(system, near)
 
 
 @kernel

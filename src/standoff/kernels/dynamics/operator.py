@@ -26,6 +26,7 @@ from standoff.kernels.dynamics.arrays import (
     n_rates,
     pair_rates,
 )
+from standoff.kernels.dynamics.crossing import exchange
 from standoff.kernels.dynamics.rigid_body import (
     along_rates,
     orthonormal,
@@ -107,10 +108,10 @@ def step_bodies(system, state, h, table, tick, work, scratch):
     else:
         step_explicit(system, state, h, table, tick, work, scratch)
     drive(system, table, 2 * tick + 2, scratch.stage)
+    exchange(scratch.stage, state, scratch.ways, system)
     for body in range(n_bodies(system)):
-        o = body_row(body)
-        stand(scratch.stage, o, state, o)
         if kind_of(system, body) == FREE:
+            o = body_row(body)
             put(orthonormal(read_rotation(state, o + X_ROTATION)), state, o + X_ROTATION)
     state[S_LOST] += h * scratch.total[R_LOST]
     state[S_GIVEN] += h * scratch.total[R_GIVEN]

@@ -38,13 +38,19 @@ from standoff.kernels.dynamics.shared_springs import shared_since
 from standoff.kernels.pair.events import N_COUNT_SLOTS
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.contact_frame import MOST_NORMALS, Choices, contact_frame, pose_at
-from standoff.kernels.solids.contact_front import MOST_RETRIED_IN, Both
+from standoff.kernels.solids.contact_front import C_REST, CONTACT_REALS, MOST_RETRIED_IN, Both
 from standoff.kernels.solids.contact_places import (
+    F_ABOVE,
+    F_BEFORE,
+    F_EARLIER,
     F_ENDED,
     F_LOST,
     F_MADE,
     F_PLACES,
+    F_ROWS,
+    F_SPOT,
     F_SPOTS,
+    F_STORE,
     P_A,
     P_B,
     P_DISTANCE,
@@ -53,9 +59,12 @@ from standoff.kernels.solids.contact_places import (
     S_DEPTH,
     S_NORMAL,
     S_SHARE,
+    SPOT_REALS,
     place_at,
     spot_at,
 )
+from standoff.kernels.solids.front_frame import motion_between
+from standoff.kernels.solids.front_rows import N_ROWS
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BUDGET,
@@ -89,8 +98,9 @@ from standoff.kernels.state.arrays import (
 from standoff.kernels.values import Pose
 
 STILL = Pose((1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
-# Depths, for which a contact is meant, up to which places are looked for.
-LOOKED_FOR = 8.0
+# Depths, for which a contact is meant, up to which places are looked for, at least; and times what
+# was pressed deepest, and has moved since, where that is more.
+LOOKED_FOR, DEEPER = 8.0, 2.0
 # Evaluations that a frame may take.
 MOST_EVALUATIONS = 200_000.0
 
@@ -142,6 +152,37 @@ def ask_contacts(system, pair, pose, best):
 
 
 @kernel
+def deepest_lately(kept):
+    """The depth of the deepest spot of the last frame that had some, length; 0: of none lately."""
+    count, at, deepest = int(kept[F_SPOTS]), F_SPOT, 0.0
+    if count == 0:
+        count, at = int(kept[F_EARLIER]), F_BEFORE
+    for k in range(count):
+        deepest = max(deepest, kept[at + SPOT_REALS * k + S_DEPTH])
+    return deepest
+
+
+@kernel
+def look_deeper(b, kept, best):
+    """Let the length up to which places are looked for grow with what is pressed, for as long as
+    there is something: what a vertex hands on to an edge or to another face is found there only if
+    it is looked for as deep as it is. What rests is looked at so much earlier."""
+    above, deepest, wanted = best[ABOVE], 0.0, 0.0
+    if kept[F_MADE] > 0.0:
+        deepest = deepest_lately(kept)
+        last = S.Side(b.ints, b.reals, b.own, b.numbers, pose_at(kept), b.sense)
+        wanted = DEEPER * (deepest + motion_between(last, b, best[SIZE])[0])
+    if deepest > 0.0:
+        above = max(above, kept[F_ABOVE])
+    while above < wanted:
+        above *= 2.0
+    more, rows = above - kept[F_ABOVE], ahead(kept, F_ROWS)
+    for k in range(int(kept[F_STORE + N_ROWS]) if more > 0.0 else 0):
+        rows[CONTACT_REALS * k + C_REST] -= more
+    best[ABOVE] = kept[F_ABOVE] = above
+
+
+@kernel
 def find_places(system, pair, state, counts, scratch):
     """The places of a pair of solids where its bodies are now; their poses are in the motion."""
     m, kept = scratch.motion, pointer(state, kept_row(system, pair))
@@ -151,8 +192,10 @@ def find_places(system, pair, state, counts, scratch):
     for k in range(N_COUNT_SLOTS):
         counts[k] = 0
     span = system.numbers[pair_numbers(system, pair) + P_SPAN]
-    choices = Choices(span, 0.0, MOST_RETRIED_IN, kept_rows(system, pair))
-    contact_frame(both_of(system, pair, pose), kept, choices, best, counts)
+    choices = Choices(span, 0.0, MOST_RETRIED_IN, kept_rows(system, pair), best[ABOVE])
+    both = both_of(system, pair, pose)
+    look_deeper(both.b, kept, best)
+    contact_frame(both, kept, choices, best, counts)
 
 
 @kernel

@@ -42,6 +42,12 @@ from standoff.kernels.dynamics.coupled_tool import (
     stored_in_coupler,
 )
 from standoff.kernels.dynamics.coupler import Moment, couple
+from standoff.kernels.dynamics.crossing import (
+    N_WAY,
+    begin_crossing,
+    book_crossing,
+    goes_far_enough,
+)
 from standoff.kernels.dynamics.eased_friction import begin_friction, ease_friction
 from standoff.kernels.dynamics.flat_contact import N_SPOTS
 from standoff.kernels.dynamics.near_arrays import n_visited, near_arrays, searches, visited
@@ -101,6 +107,7 @@ def scratch_for(system, told):
         np.zeros(N_POLYTOPE),
         np.zeros(CONTACT_ROOM if system.layout[I_SOLIDS] > 0 else 1),
         told,
+        np.zeros(N_WAY * rows + 1),
     )
 
 
@@ -118,6 +125,7 @@ def pointed(arrays, near):
         pointer(arrays[11], 0),
         pointer(arrays[8], 0),
         pointer(arrays[9], 0),
+        pointer(arrays[12], 0),
         pointer(arrays[10], 0),
         pointer(near[0], 0),
         pointer(near[1], 0),
@@ -129,7 +137,7 @@ def keep_alive(arrays, near, counts, log):
     """Call this after the last use of what points into the arrays: Numba frees an array after its
     own last use, and a pointer is not one."""
     total = len(counts) + len(log) + len(near[0]) + len(near[1])
-    for k in range(12):
+    for k in range(13):
         total += len(arrays[k])
     return total
 
@@ -196,9 +204,13 @@ def track_pairs(system, state, h, told, work, scratch):
         pair = k if everything else visited(scratch, k)
         if by_tree:
             catch_up(system, pair, state, h, tick, scratch)
+        of_solids = is_of_solids(system, pair)
+        begun = begin_crossing(system, pair, state, of_solids)
         why = track_pair(system, pair, state, h, work, scratch)
         if why != FINE:
             return why
+        if goes_far_enough(system, pair, begun, scratch):
+            book_crossing(system, pair, state, begun, of_solids, scratch)
     return FINE
 
 

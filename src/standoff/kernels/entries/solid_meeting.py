@@ -92,7 +92,7 @@ def meet_at(two, both, kept, asked, room, counts):
     for k in range(8):
         counts[k] = 0
         two.probe.counts[k] = 0  # or what it may take would be that of all frames together
-    choices = Choices(inf, asked[B.Q_FRAME + 3], 1, MOST_ROWS)
+    choices = Choices(inf, asked[B.Q_FRAME + 3], 1, MOST_ROWS, room[ABOVE])
     n = contact_frame(both, kept, choices, room, counts)
     minima, sets = ahead(room, AT_NORMALS), ahead(room, AT_SETS)
     unmark(room, minima)

@@ -42,13 +42,15 @@ UNSEEN_FOR = 1.0 / 16.0
 class Choices(NamedTuple):
     """What a route chooses: the length within which spots share a spring; how much of the length up
     to which places are looked for is for their patches alone; of how many frames in one, 4 at
-    most, Newton's method is tried again where it came to none; and for how many rows of the front
-    there is room in what is kept."""
+    most, Newton's method is tried again where it came to none; for how many rows of the front
+    there is room in what is kept; and how deep a place may be that is felt though nobody knows
+    where it has come from, length."""
 
     shared: Any
     wider: Any
     retried: Any
     rows: Any
+    deepest: Any
 
 
 @kernel
@@ -75,7 +77,7 @@ def contact_frame(both, kept, choices, room, counts):
         retried = 1
     find_contacts(both, front, radius, retried, best, minima, counts)
     lately = moved_lately(kept, step, choices.retried)
-    asked = Asked(lately, best[ABOVE], choices.shared, choices.wider)
+    asked = Asked(lately, choices.deepest, choices.shared, choices.wider, b.pose)
     if kept[F_MADE] == 0.0:
         leave_out_through(both, best, minima, counts)
     elif goes_missing(kept, asked, best, minima):

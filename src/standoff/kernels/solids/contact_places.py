@@ -12,8 +12,8 @@ they too came from above 0: each has a spring of its own.
 from math import sqrt
 from typing import Any, NamedTuple
 
-from standoff.kernels.algebra.rigid import read_vector
-from standoff.kernels.algebra.vectors import add, dot, norm, scale, sub
+from standoff.kernels.algebra.rigid import read_rotation, read_vector
+from standoff.kernels.algebra.vectors import add, dot, norm, rotate, rotate_back, scale, sub
 from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.solids.contact_ends import is_straight
 from standoff.kernels.solids.contact_front import CONTACT_REALS, MOST_RETRIED_IN
@@ -70,12 +70,13 @@ MOST_SPRINGS = 4.0
 # What is kept of a pair: 1 once a frame was made; B's pose in A's frame in it; how many places;
 # whether there was no room or time for some; how many that were felt ended in this frame without
 # coming to 0; how many spots; how many of an earlier frame are kept, and for how many frames there
-# were none since; what B moved in each of the last frames, in turn; then the store of the front,
-# its branches, the places, the spots, those of the last frame before that had some, and the front's
-# rows with how long they rest.
+# were none since; what B moved in each of the last frames, in turn; up to which length places were
+# looked for, where that grows; then the store of the front, its branches, the places, the spots,
+# those of the last frame before that had some, and the front's rows with how long they rest.
 F_MADE, F_POSE, F_PLACES, F_LOST, F_ENDED, F_SPOTS = 0, 1, 13, 14, 15, 16
 F_EARLIER, F_NONE_FOR, F_STEPS = 17, 18, 19
-F_STORE = F_STEPS + MOST_RETRIED_IN
+F_ABOVE = F_STEPS + MOST_RETRIED_IN
+F_STORE = F_ABOVE + 1
 F_BRANCHES = F_STORE + STORE_REALS
 F_AT = F_BRANCHES + BRANCH_REALS * MOST_PLACES
 F_SPOT = F_AT + PLACE_REALS * MOST_PLACES
@@ -86,14 +87,15 @@ KEPT_REALS = F_ROWS + CONTACT_REALS * MOST_ROWS
 
 class Asked(NamedTuple):
     """Of a frame, lengths: what B has moved in it and the last ones, at most, in which a place that
-    is found now was not looked for; how deep a place may be that is felt in a frame without one
-    before; within which distance spots share a spring; and how much of the length up to which
-    places are looked for is for their patches alone."""
+    is found now was not looked for; how deep a place may be that is felt though nobody knows where
+    it has come from; within which distance spots share a spring; and how much of the length up to
+    which places are looked for is for their patches alone. And B's pose."""
 
     step: Any
     deepest: Any
     span: Any
     wider: Any
+    pose: Any
 
 
 @kernel
@@ -156,12 +158,25 @@ def jump_of(asked, size):
 
 
 @kernel
+def came_in(kept, minima, o, d, asked):
+    """Was a pair of points in overlap hardly deeper than `asked.deepest`, or apart, along their
+    normal in the frame before? In a long step B leaves the far side of what it comes to by as
+    much, which no motion has pressed."""
+    if d >= -asked.deepest:
+        return True
+    y = read_vector(minima, o + POINTS + 3)
+    own = rotate_back(asked.pose.R, sub(y, asked.pose.p))
+    before = add(rotate(read_rotation(kept, F_POSE), own), read_vector(kept, F_POSE + 9))
+    return d - dot(normal_of(minima, o), sub(y, before)) >= -asked.deepest
+
+
+@kernel
 def is_felt(kept, minima, o, d, asked, size):
     """Is a minimum of the signed distance felt, by the places of the frame before?"""
     if kept[F_MADE] == 0.0:
         return d >= -asked.deepest
     step = jump_of(asked, size)
-    if d >= -step:
+    if d >= -step and came_in(kept, minima, o, d, asked):
         return True
     return was_felt(kept, minima, o, d, branch_reach(size, asked.step), step)
 

@@ -73,7 +73,7 @@ def turned(profile: Outline, name: str) -> Boundary:
     faces = []
     for piece in profile.pieces:
         ends = piece.at(np.array([0.0, 1.0]))
-        faces.append(Face((_quadric(*ends),), tuple(rim(ends[0]) + rim(ends[1]))))
+        faces.append(Face((quadric(*ends),), tuple(rim(ends[0]) + rim(ends[1]))))
     return Boundary.from_brep(edges=edges, faces=faces, name=name)
 
 
@@ -88,7 +88,7 @@ def _patch(piece: Piece) -> Torus | Revolution:
     return Revolution(RationalBezier(points) if len(points) > 2 else Line(*points))
 
 
-def _quadric(p: Array, q: Array) -> Plane | Cylinder | Cone:
+def quadric(p: Array, q: Array) -> Plane | Cylinder | Cone:
     """Of a segment."""
     (r, z), (r1, z1) = p, q
     if z == z1:
