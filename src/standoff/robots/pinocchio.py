@@ -17,6 +17,7 @@ from standoff.robots.geoms import Geoms
 from standoff.robots.joints import Joints
 from standoff.robots.kinematics import Motion
 from standoff.robots.loaded import Loaded
+from standoff.robots.mimics import Followed
 from standoff.robots.pinocchio_joints import Rows, read_joints
 from standoff.robots.pinocchio_shapes import read_shape
 from standoff.robots.shapes import Made, Meshes, Source, made_geoms
@@ -40,27 +41,42 @@ class PinocchioKinematics:
     model : pinocchio.Model
     """
 
-    def __init__(self, model: Any, joints: Joints, carriers: Ints, placements: Array) -> None:
-        """`carriers`: the model's joint of each moving geometry; `placements` in its frame."""
-        self.model, self.nq, self.nv = model, int(model.nq), int(model.nv)
+    def __init__(
+        self,
+        model: Any,
+        joints: Joints,
+        carriers: Ints,
+        placements: Array,
+        follows: Followed | None = None,
+    ) -> None:
+        """`carriers`: the model's joint of each moving geometry; `placements` in its frame.
+        `follows`: numbers of the model's q that are none of the robot's."""
+        self.model, self._follows = model, follows
+        self.nq = int(model.nq) if follows is None else len(follows.own_q)
+        self.nv = int(model.nv) if follows is None else len(follows.own_v)
         self._joints, self._carriers, self._placements = joints, carriers, placements
         self.check = Configurations(joints, self.nq, NEUTRAL)
         self._data, self._lock = model.createData(), threading.Lock()
         self._used, self._of = np.unique(carriers, return_inverse=True)
-        self.fold, columns = _folded(model)
+        self.fold, columns = _folded(model, follows)
         self.support = np.zeros((len(carriers), self._data.J.shape[1]))
         for row, carrier in zip(self.support, carriers, strict=True):
             for joint in list(model.supports[int(carrier)])[1:]:  # 0 is the universe
                 row[columns[joint]] = 1.0
 
     def __reduce__(self) -> Any:
-        if self.fold is not None:
+        if self.model.nvExtended != self.model.nv:
             # Pinocchio 4.1 loses numbers of such joints when it stores them, and then crashes
             raise StandoffError(
                 f"The model {self.model.name!r} has joints that mimic others, which Pinocchio does "
                 "not store: load the robot again from its file."
             )
-        return PinocchioKinematics, (self.model, self._joints, self._carriers, self._placements)
+        own = self._joints, self._carriers, self._placements, self._follows
+        return PinocchioKinematics, (self.model, *own)
+
+    def _whole(self, q: Array) -> Array:
+        """The model's configuration."""
+        return np.asarray(q) if self._follows is None else self._follows.whole(np.asarray(q))
 
     def _placed(self) -> Array:
         places = self._data.oMi
@@ -69,29 +85,33 @@ class PinocchioKinematics:
 
     def poses(self, q: Array) -> Array:
         with self._lock:
-            pin.forwardKinematics(self.model, self._data, q)
+            pin.forwardKinematics(self.model, self._data, self._whole(q))
             return self._placed()
 
     def motion(self, q: Array) -> Motion:
         with self._lock:
             # its columns are about the world's origin, linear first
-            screws = np.array(pin.computeJointJacobians(self.model, self._data, q))
+            screws = np.array(pin.computeJointJacobians(self.model, self._data, self._whole(q)))
             return Motion(self._placed(), screws)
 
     def jacobians(self, q: Array) -> Array:
         return jacobians_of(self.motion(q), self.support, self.fold)
 
     def integrate(self, q: Array, v: Array) -> Array:
-        return np.asarray(pin.integrate(self.model, np.asarray(q), np.asarray(v)))
+        velocity = np.asarray(v) if self._follows is None else self._follows.fold @ np.asarray(v)
+        after = np.asarray(pin.integrate(self.model, self._whole(q), velocity))
+        return after if self._follows is None else after[self._follows.own_q]
 
     def difference(self, q0: Array, q1: Array) -> Array:
-        return np.asarray(pin.difference(self.model, np.asarray(q0), np.asarray(q1)))
+        way = np.asarray(pin.difference(self.model, self._whole(q0), self._whole(q1)))
+        return way if self._follows is None else way[self._follows.own_v]
 
     def neutral(self) -> Array:
-        return np.asarray(pin.neutral(self.model))
+        found = np.asarray(pin.neutral(self.model))
+        return found if self._follows is None else found[self._follows.own_q]
 
 
-def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
+def _folded(model: Any, follows: Followed | None) -> tuple[Array | None, dict[int, slice]]:
     """How v moves the columns of Pinocchio's Jacobian, and each joint's columns in it.
 
     Joints that mimic another have columns of their own, scaled, and none of v.
@@ -101,7 +121,7 @@ def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
         for j in range(1, model.njoints)
     }
     if model.nvExtended == model.nv:
-        return None, columns
+        return None if follows is None else follows.fold, columns
     fold = np.zeros((model.nvExtended, model.nv))
     for j, own in columns.items():
         at = model.idx_vs[j]

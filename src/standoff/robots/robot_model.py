@@ -84,9 +84,8 @@ class RobotModel(KeepsReadOnly):
         """Names of the joints that a configuration (nq,) has outside their limits."""
         q = self.kinematics.check(q)
         wrong = np.flatnonzero((q < self.lower) | (q > self.upper))
-        at = np.searchsorted(np.sort(self.joints.q_at), wrong, side="right") - 1
-        order = np.argsort(self.joints.q_at, kind="stable")
-        return tuple(dict.fromkeys(self.joints.names[order[k]] for k in at))
+        owners = (self.joints.owner(i) for i in wrong.tolist())
+        return tuple(dict.fromkeys(self.joints.names[j] for j in owners))
 
     def poses(self, q: Any) -> Array:
         """(n, 4, 4) world poses of all geometries, in the order of ``geoms``."""
