@@ -92,14 +92,14 @@ class Motions(NamedTuple):
             found[:, k] = _lengths(velocities[:, self.v_at[k] : self.v_at[k] + self.v_count[k]])
         return found
 
-    def least_ways(self, q0: Array, q1: Array, velocity: Array) -> Array:
-        """(n,): how far each motion is from one configuration to another at least, whatever way it
-        takes; ``velocity`` (nv,) is the package's difference of the two."""
-        found = self.rates(velocity[None])[0, : self.size]
+    def least_ways(self, q: Array, velocities: Array) -> Array:
+        """(m, n): how far each motion is from one of m + 1 configurations to the next at least,
+        whatever way it takes; ``velocities`` (m, nv) are the package's differences of them."""
+        found = self.rates(velocities)[:, : self.size]
         for k in np.flatnonzero(~self.turns & (self.v_count > 1)).tolist():
             # a velocity in axes that turn is of a way that is no line
             part = slice(self.q_at[k], self.q_at[k] + self.q_count[k])
-            found[k] = float(np.linalg.norm(q1[part] - q0[part]))
+            found[:, k] = _lengths(np.diff(q[:, part], axis=0))
         return found
 
     def swerves(self, rates: Array) -> Array:

@@ -199,22 +199,27 @@ class BoundedPath(JointPath):
         ------
         StandoffError
         """
-        speeds = motions.rates(self._speed[None])[0, : motions.size]
-        for k in range(len(times) - 1):
-            way = motions.least_ways(q[k], q[k + 1], self._kinematics.difference(q[k], q[k + 1]))
-            span = times[k + 1] - times[k]
-            slack = SPEED_SLACK * (1.0 + speeds * span + np.abs(q).max(initial=0.0))
-            if (way > speeds * span + slack).any():
-                j = int(np.argmax(way - speeds * span))
-                at, count = int(motions.v_at[j]), int(motions.v_count[j])
-                which = f"velocity {at}" if count == 1 else f"velocity {at} to {at + count - 1}"
-                raise StandoffError(
-                    f"path: {which} is {way[j] / span:.6g} between {times[k]!r} and "
-                    f"{times[k + 1]!r} s, but its greatest speed is given as {speeds[j]:.6g}: no "
-                    "proof would hold.",
-                    "speed",
-                    self._speed,
-                )
+        if len(times) < 2:
+            return
+        speeds = motions.rates(self._speed[None])[:, : motions.size]
+        spans = np.diff(times)[:, None]
+        differences = [self._kinematics.difference(a, b) for a, b in pairwise(q)]
+        ways = motions.least_ways(q, np.array(differences))
+        size = np.abs(q).max(axis=1, initial=0.0)[:-1, None]
+        excess = ways - speeds * spans
+        wrong = excess > SPEED_SLACK * (1.0 + speeds * spans + size)
+        if wrong.any():
+            k = int(np.argmax(wrong.any(axis=1)))
+            j = int(np.argmax(excess[k]))
+            at, count = int(motions.v_at[j]), int(motions.v_count[j])
+            which = f"velocity {at}" if count == 1 else f"velocity {at} to {at + count - 1}"
+            raise StandoffError(
+                f"path: {which} is {ways[k, j] / spans[k, 0]:.6g} between {times[k]!r} and "
+                f"{times[k + 1]!r} s, but its greatest speed is given as {speeds[0, j]:.6g}: no "
+                "proof would hold.",
+                "speed",
+                self._speed,
+            )
 
 
 def _waypoints(given: Any, kinematics: Kinematics) -> Array:
