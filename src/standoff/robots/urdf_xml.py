@@ -265,7 +265,8 @@ class _Reader:
         at = f"{where}: <{tag}>"
         known = (*kind.numbers, *kind.words, *(kind.more or ()))
         for name in element.attrib:
-            meant = nearest(name, [x for x in known if x not in element.attrib], LIKE)
+            missing = [x for x in known if x not in element.attrib]
+            meant = nearest(name, missing, *((LIKE,) if kind.more is None else ()))
             if name not in known and (kind.more is not None or meant):
                 fix = f"write {meant}." if meant else f"it has {one_of(known) or 'none'}."
                 raise self.error(at, f"{shown(name)} is no attribute of it: {fix}")

@@ -26,12 +26,16 @@ SAMPLES = 300
 """Of a path, and as many again around the nearest of them."""
 ACCURACY = 1e-10
 """Of the judge's distances, length: roundoff of kinematics of some metres."""
-BESIDE = (-0.03, -1e-3, -1e-5, 1e-5, 1e-3)
-"""What is asked for beside what the samples keep, length."""
+ABOVE = (1e-5, 1e-4, 1e-3, 1e-2)
+"""What is asked for above and below what the samples keep, length."""
+FAR_BELOW = -0.05
+"""The same, where bounds of motion alone may prove it."""
 
 PATHS = ("waypoints", "function", "two velocities", "CubicSpline", "Pchip", "BSpline", "BPoly")
 """The last four are of robots whose configurations are plain numbers."""
-PLAIN_PATHS = 3
+OFTEN = (0.2, 0.1, 0.1, 0.15, 0.15, 0.15, 0.15)
+OFTEN_TURNED = (0.7, 0.15, 0.15)
+"""How often each is drawn; those of unit quaternions and (cos, sin) have the first three."""
 
 
 class Part(NamedTuple):
@@ -494,14 +498,15 @@ class Case(NamedTuple):
     wrong: str
 
 
-def case_of(seed: int, number: int) -> Case | None:
-    """One robot, path and clearance; None where the spheres overlap from the start."""
+def cases_of(seed: int, number: int) -> list[Case]:
+    """Proofs along one path of one robot: of a clearance above and of one below what samples keep,
+    and of one far below; fewer where the spheres overlap."""
     rng = np.random.default_rng((seed, number))
     package = list(PACKAGES)[number % len(PACKAGES)]
     known = PACKAGES[package][0]
     drawn = drawn_robot(rng, package, known[number // len(PACKAGES) % len(known)])
-    kinds = PATHS if drawn.robot.nq == drawn.robot.nv else PATHS[:PLAIN_PATHS]
-    kind = kinds[int(rng.integers(len(kinds)))]
+    plain = drawn.robot.nq == drawn.robot.nv
+    kind = str(rng.choice(PATHS, p=OFTEN) if plain else rng.choice(PATHS[:3], p=OFTEN_TURNED))
     way = drawn_way(rng, drawn, kind)
     times = np.linspace(*way.span, SAMPLES)
     least = drawn.least(way.at(times))
@@ -509,12 +514,14 @@ def case_of(seed: int, number: int) -> Case | None:
     ends = times[max(near - 1, 0)], times[min(near + 1, SAMPLES - 1)]
     times = np.concatenate([times, np.linspace(*ends, SAMPLES)])
     least = np.concatenate([least, drawn.least(way.at(times[SAMPLES:]))])
-    clearance = float(least.min() + rng.choice(BESIDE))
-    if clearance < 0.0:
-        return None
-    proof = drawn.robot.certify(way.given, clearance, times=way.times)
-    wrong = judged(proof, drawn, way, times, least)
-    return Case(package, drawn.kinds, kind, proof.verdict.name, wrong)
+    found = []
+    for beside in (rng.choice(ABOVE), -rng.choice(ABOVE), FAR_BELOW):
+        clearance = float(least.min() + beside)
+        if clearance >= 0.0:
+            proof = drawn.robot.certify(way.given, clearance, times=way.times)
+            wrong = judged(proof, drawn, way, times, least)
+            found.append(Case(package, drawn.kinds, kind, proof.verdict.name, wrong))
+    return found
 
 
 def judged(proof: PathProof, drawn: Drawn, way: Way, times: Array, least: Array) -> str:
