@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import quad_vec
 from scipy.interpolate import BPoly, BSpline, CubicSpline, NdPPoly, PPoly, make_interp_spline
 
 import standoff as so
@@ -112,6 +113,12 @@ def test_a_function_s_speeds_are_those_of_the_package_s_velocity() -> None:
         path = FunctionPath(drives, 3.0, [1.0, 0.0, 1.0], acceleration)
         assert robot.certify(path, clearance=1.5).verdict.name == "PROVEN"
         assert robot.certify(path, clearance=1.6).verdict.name == "VIOLATED"
+
+    def winds(time: float) -> list[float]:  # as fast, and its heading is sin(3 t)
+        way = quad_vec(lambda t: np.array([np.cos(np.sin(3 * t)), np.sin(np.sin(3 * t))]), 0, time)
+        return [*way[0], np.cos(np.sin(3 * time)), np.sin(np.sin(3 * time))]
+
+    assert robot.certify(FunctionPath(winds, 1.0, [1.0, 0.0, 3.0]), 0.2).verdict.name == "PROVEN"
     slow = FunctionPath(drives, 3.0, [0.9, 0.0, 1.0])
     with pytest.raises(so.StandoffError, match=r"velocity 0 to 1 is .* given as 0.9"):
         robot.certify(slow)

@@ -77,12 +77,12 @@ def test_a_multiplier_of_nothing_stands_at_its_offset(tmp_path: Path) -> None:
     for q in (-1.0, 2.0):
         assert np.abs(robot.poses([q])[2, :3, 3] - [0.0, 1.0, 0.7]).max() <= 1e-15
     assert ("base_0", "y_0", "rigid to each other") in robot.report().left_out
-    model, geometry = two_joints(0.0, 0.7)
+    model, geometry = two_joints(0.0, -0.7)
     robot = so.Robot.from_pinocchio(model, geometry)
     for q in (-1.0, 2.0):
         at = robot.poses([q])[1, :3, :3]
         assert (
-            np.abs(at - so.Pose.exp([0, 0, q], np.zeros(3)).rotation @ turn_x(0.7)).max() <= 1e-15
+            np.abs(at - so.Pose.exp([0, 0, q], np.zeros(3)).rotation @ turn_x(-0.7)).max() <= 1e-15
         )
     assert robot.certify([[-1.0], [2.0]], 0.1).verdict.name == "PROVEN"
 
@@ -155,3 +155,4 @@ def test_a_robot_of_one_joint(tmp_path: Path) -> None:
     near = robot.clearance([1.0])
     assert abs(near.distance - (5.0**0.5 - 0.2)) <= 1e-15
     assert abs(near.gradient[0] - 1.0 / 5.0**0.5) <= 1e-15
+    assert robot.kinematics.motion(np.array([1.0])).screws.shape == (6, 1)
