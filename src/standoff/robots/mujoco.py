@@ -312,17 +312,17 @@ def _notes(model: Any, joints: Joints) -> tuple[str, ...]:
 def _notes_of_pairs(model: Any) -> list[str]:
     """Where the pairs are others than MuJoCo's, or than those of the same robot as a URDF file."""
     found = []
-    more = set(combinations(range(model.ngeom), 2)) - set(pairs_left_out(model))
-    more -= set(watched_pairs(model))
+    watched = set(combinations(range(model.ngeom), 2)) - set(pairs_left_out(model))
+    more = len(watched - set(watched_pairs(model)))
     if more:
         found.append(
-            f"{counted(len(more), 'pair')} of bodies welded to a parent or child are watched: "
+            f"{counted(more, 'pair')} of bodies welded to a parent or child are watched: "
             "MuJoCo takes the two bodies that are welded for one, and leaves them out"
         )
-    welded = (model.body_weldid == 0) & (np.arange(model.nbody) > 0)
-    based = np.flatnonzero(welded[model.body_parentid] & ~welded).tolist()
-    filtered = not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
-    if based and filtered:
+    bodies, parents = model.geom_bodyid, model.body_parentid
+    ends = [(int(bodies[g]), int(bodies[h])) for i, j in watched for g, h in ((i, j), (j, i))]
+    based = sorted({b for a, b in ends if a > 0 == model.body_weldid[a] and parents[b] == a})
+    if based and not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
         names = ", ".join(model.body(b).name or f"body {b}" for b in based)
         found.append(
             f"the parents of {names} are fixed in the world: as MuJoCo does, it watches them with "

@@ -360,8 +360,8 @@ class _Reader:
             part = self.part(element, tag, where, tag == "limit" and kind in LIMITED)
             if part is not None:
                 self.numbers(part, where)
-        axis = self.part(element, "axis", where)
-        way = np.array([1.0, 0.0, 0.0]) if axis is None else self.numbers(axis, where)["xyz"]
+        given = self.part(element, "axis", where)
+        way = np.array([1.0, 0.0, 0.0]) if given is None else self.numbers(given, where)["xyz"]
         size = float(np.linalg.norm(way))
         if size == 0.0 and kind in (*ALONG_AXIS, "planar"):
             raise self.error(f"{where}: <axis>", "xyz is zero: give a direction.")
@@ -379,7 +379,8 @@ class _Reader:
             ratio, offset = (float(numbers[x][0]) for x in ("multiplier", "offset"))
             follows = str(mimic.get("joint")), ratio, offset
         placement = self.placement(element, where)
-        return Joint(name, kind, *ends.values(), placement, way / (size or 1.0), follows)
+        axis = way / (size or 1.0)
+        return Joint(name, kind, ends["parent"], ends["child"], placement, axis, follows)
 
     def check_tree(self, links: list[str], joints: list[Joint]) -> None:
         """Refuse what is no tree of the links."""

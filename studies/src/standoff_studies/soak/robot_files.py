@@ -421,7 +421,7 @@ def judged(robot: so.Robot, root: ET.Element, whole: ET.Element, kind: str, rng:
         return f"{len(poses)} geometries of {len(placed)}"
     for each in placed:
         name = each.name or next(iter(set(poses) - {other.name for other in placed}))
-        if name not in poses or bodies[name].digest != each.body.digest:
+        if name not in poses or getattr(bodies[name], "digest", "") != each.body.digest:
             return f"{name} is not there, or is another body"
         if not np.abs(poses[name] - each.pose).max() <= NEAR:
             return f"{name} is {np.abs(poses[name] - each.pose).max():.3g} off"
