@@ -363,11 +363,6 @@ def drawn_mujoco(rng: Draw, kinds: tuple[str, ...]) -> Drawn:
         mujoco.mj_differentiatePos(model, way, 1.0, q, r)
         return way
 
-    parts = []
-    for j, at in enumerate(model.jnt_dofadr.tolist()):
-        if model.jnt_type[j] in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL):
-            shift = 3 if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE else 0
-            parts.append(Part(slice(at, at + shift), slice(at + shift, at + shift + 3)))
     return Drawn(
         kinds,
         so.Robot.from_mujoco(model),
@@ -376,8 +371,19 @@ def drawn_mujoco(rng: Draw, kinds: tuple[str, ...]) -> Drawn:
         integrate,
         difference,
         np.array(model.qpos0),
-        tuple(parts),
+        _mujoco_parts(model),
     )
+
+
+def _mujoco_parts(model: Any) -> tuple[Part, ...]:
+    import mujoco
+
+    parts = []
+    for j, at in enumerate(model.jnt_dofadr.tolist()):
+        if model.jnt_type[j] in (mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL):
+            shift = 3 if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE else 0
+            parts.append(Part(slice(at, at + shift), slice(at + shift, at + shift + 3)))
+    return tuple(parts)
 
 
 PACKAGES = {
