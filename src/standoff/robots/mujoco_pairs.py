@@ -22,7 +22,7 @@ HALF_SPACES = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIEL
 
 
 WELDED = "welded together"
-NEIGHBOURS = "parent and child, joined by joints"
+PARENT_AND_CHILD = "parent and child, joined by joints"
 NOT_MEANT = "kept apart by contype and conaffinity"
 EXCLUDED = "excluded by the model"
 ENDLESS = "planes and height fields: MuJoCo takes no two"
@@ -72,7 +72,7 @@ def _left_out(model: Any, nested: Mask) -> Any:
     between = np.ix_(bodies, bodies)
     found[masks == 0] = NOT_MEANT
     found[excluded[between]] = EXCLUDED
-    found[nested[between]] = NEIGHBOURS
+    found[nested[between]] = PARENT_AND_CHILD
     found[(weld[:, None] == weld[None, :])[between]] = WELDED
     for i, j in zip(model.pair_geom1, model.pair_geom2, strict=True):
         found[i, j] = found[j, i] = ""
