@@ -345,14 +345,21 @@ def _stands(root: ET.Element, joint: ET.Element) -> bool:
     return read(mimic, "multiplier", 1, "1")[0] == 0.0 or _stands(root, master)
 
 
+def read_mjcf(element: ET.Element, name: str, default: str) -> Array:
+    """Numbers of an attribute as MuJoCo reads them: nothing is the default, and 0x1 is one."""
+    text = (element.get(name) or default).split()
+    return np.array([float.fromhex(x) if "x" in x else float(x) for x in text])
+
+
 def mjcf_placed(root: ET.Element, of: Callable[[str], Array]) -> list[Placed]:
     """All geoms of an MJCF file where the file puts them."""
     found: list[Placed] = []
+    seen: list[str] = []
 
     def geom(each: ET.Element, link: str, pose: Array) -> None:
         kind, at = each.get("type", "sphere"), np.eye(4)
-        size = np.array([float(x) for x in each.get("size", "").split()])
-        at[:3, 3] = read(each, "pos", 3, "0 0 0")
+        size = read_mjcf(each, "size", "")
+        at[:3, 3] = read_mjcf(each, "pos", "0 0 0")
         body = {
             "sphere": lambda: so.shapes.sphere(size[0]),
             "capsule": lambda: so.shapes.capsule(size[0], 2.0 * size[1]),
@@ -364,16 +371,17 @@ def mjcf_placed(root: ET.Element, of: Callable[[str], Array]) -> list[Placed]:
     def walk(body: ET.Element, link: str, pose: Array) -> None:
         for joint in body.findall("joint"):
             anchor = np.eye(4)
-            anchor[:3, 3] = read(joint, "pos", 3, "0 0 0")
-            axis = read(joint, "axis", 3, "0 0 1")
-            name = joint.get("name", "")
+            anchor[:3, 3] = read_mjcf(joint, "pos", "0 0 0")
+            axis = read_mjcf(joint, "axis", "0 0 1")
+            name = joint.get("name") or f"joint {len(seen)}"
+            seen.append(name)
             turn = moved(joint.get("type", "hinge"), axis, float(of(name)[0]))
             pose = pose @ anchor @ turn @ np.linalg.inv(anchor)
         for each in body.findall("geom"):
             geom(each, link, pose)
         for child in body.findall("body"):
             place = np.eye(4)
-            place[:3, 3] = read(child, "pos", 3, "0 0 0")
+            place[:3, 3] = read_mjcf(child, "pos", "0 0 0")
             walk(child, child.get("name", ""), pose @ place)
 
     for world in root.findall("worldbody"):
