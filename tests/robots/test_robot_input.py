@@ -201,7 +201,9 @@ def test_mimic_joints_are_to_be_decided(tmp_path: Path) -> None:
 
 
 def test_an_unknown_joint_is_named(tmp_path: Path) -> None:
-    with pytest.raises(so.StandoffError, match=r"'turn' is of the type 'wobbly'; URDF has"):
+    with pytest.raises(
+        so.StandoffError, match=r"joint 'turn': it is of the type 'wobbly'; URDF has"
+    ):
         so.Robot.from_urdf(written(tmp_path, link("", "wobbly")))
     model, geometry = pin.Model(), pin.GeometryModel()
     model.addJoint(0, pin.JointModelHelicalUnaligned(np.array([0, 0, 1.0]), 0.1),
@@ -222,7 +224,7 @@ def test_an_srdf_of_another_robot(tmp_path: Path) -> None:
     [
         ("", "is not XML"),
         ("<mujoco/>", "begins with <mujoco>"),
-        ("<robot name='x'><joint/></robot>", "Pinocchio does not read"),
+        ("<robot name='x'><joint/></robot>", "<joint> 0: it has no name"),
     ],
 )
 def test_files_that_are_no_urdf(tmp_path: Path, text: str, said: str) -> None:
@@ -321,7 +323,10 @@ def test_the_report_is_a_table_of_all_geometries() -> None:
     robot = so.Robot.from_mujoco(mujoco.MjModel.from_xml_string(MJCF))
     report = robot.report()
     lines = str(report).splitlines()
-    assert len(lines) == 2 + len(report.geoms) + len(report.notes)
+    reasons = [line for line in lines if line.startswith("not watched: ")]
+    assert len(lines) == 2 + len(report.geoms) + len(reasons) + len(report.notes)
+    assert sum(int(line.split()[2]) for line in reasons) == len(report.left_out)
+    assert report.overlapping == ()
     assert "'every joint': 6 joints, 11 geometries" in lines[0]
     assert [row.name for row in report.geoms][:4] == ["floor", "post", "trunk", "seen only"]
     assert report.pairs == tuple(robot.pairs)

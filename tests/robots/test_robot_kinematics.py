@@ -10,7 +10,7 @@ from robot_models import EXACT, MJCF, URDF, drawn, exact_robot
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.robots.joints import JointKind, Joints
+from standoff.robots.joints import SLIDES, JointKind, Joints
 
 mujoco = pytest.importorskip("mujoco")
 pin = pytest.importorskip("pinocchio")
@@ -19,14 +19,14 @@ pin = pytest.importorskip("pinocchio")
 def motion_of(joints: Joints, j: int, q: np.ndarray) -> np.ndarray:
     """The motion of one joint, by SciPy's rotations."""
     found, kind, at = np.eye(4), JointKind(joints.kinds[j]), joints.q_at[j]
-    if kind in (JointKind.HINGE, JointKind.SLIDE):
+    if kind in (JointKind.HINGE, *SLIDES):
         way = (joints.ratios[j] * q[at] + joints.offsets[j]) * joints.axes[j]
-        if kind == JointKind.SLIDE:
+        if kind in SLIDES:
             found[:3, 3] = way
         else:
             found[:3, :3] = Rotation.from_rotvec(way).as_matrix()
     elif kind == JointKind.CONTINUOUS:
-        angle = np.arctan2(q[at + 1], q[at])
+        angle = joints.ratios[j] * np.arctan2(q[at + 1], q[at]) + joints.offsets[j]
         found[:3, :3] = Rotation.from_rotvec(angle * joints.axes[j]).as_matrix()
     else:
         first = at + (3 if kind == JointKind.FREE else 0)
@@ -119,6 +119,7 @@ def test_joints_of_several_motions_are_several_rows() -> None:
     robot = so.Robot.from_pinocchio(*composed_model())
     rng = np.random.default_rng(5)
     assert len(robot.joints.names) == 3 + 3 + 3 + 4
+    assert robot.joints.names[2] == "joint 0/2"
     for _ in range(20):
         q = drawn(robot, rng)
         assert np.abs(forward(robot, q) - robot.poses(q)).max() <= 1e-12

@@ -95,7 +95,7 @@ def _columns(robot: RobotModel) -> dict[str, int]:
     ends = [*starts[1:], robot.nq]
     found: dict[str, int] = {}
     for at, end in zip(starts, ends, strict=True):
-        name = joints.names[int(np.flatnonzero(joints.q_at == at)[0])]
+        name = joints.names[joints.owner(at)]
         for k in range(at, end):
             found[name if end - at == 1 else f"{name}.{k - at}"] = k
     return found

@@ -281,7 +281,7 @@ class _Search:
         q = self.path.at(unique)
         check_limits(self.sight.robot, q, "path", unique)
         if isinstance(self.path, BoundedPath):
-            self.path.check_speeds(unique, q)
+            self.path.check_speeds(unique, q, self.sight.watched.motions)
         return q, self.sight.frames(q), at.reshape(-1)
 
     def _ways(self, now: Intervals, middles: Array) -> Array:

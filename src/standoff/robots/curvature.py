@@ -84,7 +84,7 @@ class Twists:
         if not motions.turns[k]:
             # a shift does not turn its frame: these are its axes at rest too
             one = [motions.ratios[k] * turn @ motions.axes[k]]
-            ways = turn.T if motions.v_count[k] == 3 else one
+            ways = turn.T if motions.q_count[k] == 3 else one
             return [Column(k, number + i, way, np.zeros(3)) for i, way in enumerate(ways)]
         given = q[number : number + int(motions.q_count[k])]
         theta, bend = _turned(motions, k, given)
@@ -152,9 +152,9 @@ def _turned(motions: Motions, k: int, given: Array) -> tuple[Array, Array]:
     """First (n, 3) and second (n, n, 3) derivatives of the turn by its numbers, in the axes that
     it carries: theta of R exp(theta)."""
     n = len(given)
-    axis = motions.axes[k]
+    axis = motions.ratios[k] * motions.axes[k]
     if n == 1:
-        return motions.ratios[k] * axis[None], np.zeros((1, 1, 3))
+        return axis[None], np.zeros((1, 1, 3))
     square = float(given @ given)
     if n == 2:
         c, s = given

@@ -20,7 +20,8 @@ class JointKind(IntEnum):
 
     FIXED reads nothing. HINGE reads an angle, rad, and SLIDE a length: both along ``axes``.
     CONTINUOUS is a hinge that reads (cos, sin). BALL reads a unit quaternion. FREE reads a position
-    and a unit quaternion.
+    and a unit quaternion. GLIDE is a slide of a planar joint, whose velocity is given by two
+    numbers in axes that turn with the joint: its speed is at most their length.
     """
 
     FIXED = 0
@@ -29,6 +30,13 @@ class JointKind(IntEnum):
     BALL = 3
     FREE = 4
     CONTINUOUS = 5
+    GLIDE = 6
+
+
+SLIDES = (JointKind.SLIDE, JointKind.GLIDE)
+"""Those that read a length."""
+SINGLE = (JointKind.HINGE, *SLIDES)
+"""Those that read one number."""
 
 
 class Joints(NamedTuple):
@@ -47,16 +55,19 @@ class Joints(NamedTuple):
     placements : (nj, 4, 4) array
         The joint's frame, before it moves, in the moved frame of its parent.
     axes : (nj, 3) array
-        Unit vectors of HINGE, CONTINUOUS and SLIDE in the joint's own frame; 0 for the others.
+        Unit vectors of hinges and slides in the joint's own frame; 0 for the others.
     q_at, v_at : (nj,) arrays
         Where the joint's numbers begin in q (nq,) and in v (nv,).
     ratios, offsets : (nj,) arrays
-        A HINGE or SLIDE is at ``ratio q[q_at] + offset``: 1 and 0 but for joints that mimic
-        another, and for models whose zero is elsewhere.
+        A hinge or slide is at ``ratio q[q_at] + offset``, a CONTINUOUS one at that angle of its
+        (cos, sin): 1 and 0 but for joints that mimic another, and for models whose zero is
+        elsewhere. The ratio of a CONTINUOUS one is whole: its angle is known to a turn.
     lower, upper : (nq,) arrays
         Limits of q; -inf and inf where there are none.
     scalar_first : bool
         Are quaternions in q (w, x, y, z)? If not they are (x, y, z, w).
+    mimics : frozenset of int
+        Numbers of the joints that read the number of another.
     """
 
     names: tuple[str, ...]
@@ -71,6 +82,12 @@ class Joints(NamedTuple):
     lower: Array
     upper: Array
     scalar_first: bool
+    mimics: frozenset[int] = frozenset()
+
+    def owner(self, i: int) -> int:
+        """The joint that the number i of a configuration is of; none that mimics it."""
+        own = [j for j in range(len(self.names)) if j not in self.mimics and self.q_at[j] <= i]
+        return max(own, key=lambda j: int(self.q_at[j]))
 
     def chain(self, joint: int) -> list[int]:
         """The joints that move a joint's frame, itself included, from the root."""

@@ -40,6 +40,4 @@ def check_limits(robot: RobotModel, q: Array, argument: str, times: Any = None) 
 def joint_of(robot: RobotModel, i: int) -> str:
     """The joint that a number of a configuration is of, as a message names it."""
     joints = robot.joints
-    before = np.flatnonzero(joints.q_at <= i)
-    j = int(before[np.argmax(joints.q_at[before])])
-    return f"joint {joints.names[j]!r} (q[{i}])"
+    return f"joint {joints.names[joints.owner(i)]!r} (q[{i}])"

@@ -52,7 +52,7 @@ class Motions(NamedTuple):
     q_at, q_count : (n,) arrays of int
         Its first number in a configuration, and how many: a turn by (cos, sin) has two.
     v_at, v_count : (n,) arrays of int
-        Its first number in a velocity, and how many.
+        Its first number in a velocity, and how many: it is as fast as these are long.
     ratios, offsets : (n,) arrays
         It is at ``ratio q + offset``: not 1 and 0 where a joint mimics another.
     links : (nj,) array of int
@@ -88,17 +88,27 @@ class Motions(NamedTuple):
         found = np.zeros((len(velocities), self.size + 1))
         single = np.flatnonzero(self.v_count == 1)
         found[:, single] = np.abs(self.ratios[single] * velocities[:, self.v_at[single]])
-        for k in np.flatnonzero(self.v_count == 3).tolist():
-            found[:, k] = _lengths(velocities[:, self.v_at[k] : self.v_at[k] + 3])
+        for k in np.flatnonzero(self.v_count > 1).tolist():
+            found[:, k] = _lengths(velocities[:, self.v_at[k] : self.v_at[k] + self.v_count[k]])
+        return found
+
+    def least_ways(self, q: Array, velocities: Array) -> Array:
+        """(m, n): how far each motion is from one of m + 1 configurations to the next at least,
+        whatever way it takes; ``velocities`` (m, nv) are the package's differences of them."""
+        found = self.rates(velocities)[:, : self.size]
+        for k in np.flatnonzero(~self.turns & (self.v_count > 1)).tolist():
+            # a velocity in axes that turn is of a way that is no line
+            part = slice(self.q_at[k], self.q_at[k] + self.q_count[k])
+            found[:, k] = _lengths(np.diff(q[:, part], axis=0))
         return found
 
     def swerves(self, rates: Array) -> Array:
-        """(m, n + 1): accelerations at constant joint velocities: of a free joint's shift, whose
-        velocity may be given in the axes that turn with it."""
+        """(m, n + 1): accelerations at constant joint velocities: of the shifts of a free or planar
+        joint, whose velocity may be given in the axes that turn with it."""
         found = np.zeros_like(rates)
-        for k in range(1, self.size):
-            if self.joints[k] == self.joints[k - 1]:
-                found[:, k - 1] = rates[:, k - 1] * rates[:, k]
+        for k in np.flatnonzero(~self.turns & (self.v_count > 1)).tolist():
+            (turn,) = np.flatnonzero(self.turns & (self.v_at == self.v_at[k] + self.v_count[k]))
+            found[:, k] = rates[:, k] * rates[:, turn]
         return found
 
     def frames(self, q: Array) -> Frames:
@@ -115,7 +125,7 @@ class Motions(NamedTuple):
                 rotations[:, k] = here @ self._turn(k, given)
                 continue
             rotations[:, k] = here
-            if self.v_count[k] == 3:
+            if self.q_count[k] == 3:
                 origins[:, k] += np.einsum("mij,mj->mi", here, given)
             else:
                 origins[:, k] += (here @ self.axes[k]) * self._position(k, given)[:, None]
@@ -129,8 +139,7 @@ class Motions(NamedTuple):
         if self.q_count[k] == 4:
             return _of_quaternions(given if self.scalar_first else np.roll(given, 1, axis=1))
         if self.q_count[k] == 2:
-            cosines, sines = (given / _lengths(given)[:, None]).T
-            return _about(self.axes[k], cosines, sines)
+            given = np.arctan2(given[:, 1], given[:, 0])[:, None]
         angles = self._position(k, given)
         return _about(self.axes[k], np.cos(angles), np.sin(angles))
 
@@ -147,9 +156,9 @@ def motions_of(joints: Joints) -> Motions:
             parent, placement = links[carrier], ends[carrier] @ placement
         q_at, v_at = int(joints.q_at[j]), int(joints.v_at[j])
         for turn, q_count, v_count in _PARTS[kind]:
-            scaled = kind in (JointKind.HINGE, JointKind.SLIDE)
-            ratio, offset = (joints.ratios[j], joints.offsets[j]) if scaled else (1.0, 0.0)
-            axis = joints.axes[j] if v_count == 1 else np.zeros(3)
+            along = kind not in (JointKind.BALL, JointKind.FREE)
+            ratio, offset = (joints.ratios[j], joints.offsets[j]) if along else (1.0, 0.0)
+            axis = joints.axes[j] if along else np.zeros(3)
             numbers = q_at, q_count, v_at, v_count
             rows.append((turn, axis, parent, placement, j, *numbers, ratio, offset))
             parent, placement = len(rows) - 1, np.eye(4)
@@ -184,6 +193,7 @@ _PARTS = {
     JointKind.BALL: ((True, 4, 3),),
     JointKind.FREE: ((False, 3, 3), (True, 4, 3)),
     JointKind.CONTINUOUS: ((True, 2, 1),),
+    JointKind.GLIDE: ((False, 1, 2),),
 }
 """The motions of each kind of joint: is it a turn, and how many numbers of q and of v it has."""
 

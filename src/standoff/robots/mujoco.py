@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import os
 import threading
 from collections.abc import Callable, Sequence
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +21,11 @@ from standoff.robots.frames import frame, frames, from_wxyz, jacobians_of
 from standoff.robots.geoms import Geoms
 from standoff.robots.joints import JointKind, Joints
 from standoff.robots.kinematics import Motion
-from standoff.robots.loaded import Loaded
-from standoff.robots.mujoco_pairs import watched_pairs
+from standoff.robots.loaded import Loaded, loaded
+from standoff.robots.mujoco_pairs import pairs_left_out, watched_pairs
 from standoff.robots.report import GIVEN, GeomReport
 from standoff.robots.shapes import Meshes, Source, made_geoms
+from standoff.wording import counted
 
 try:
     import mujoco
@@ -147,12 +150,13 @@ def load(model: Any, meshes: Meshes, skip: Sequence[str]) -> Loaded:
     kinematics = MujocoKinematics(
         model, joints, kept[moving], None if same else within_geoms[moving]
     )
-    pairs = frozenset(
-        (min(made.numbers[i], made.numbers[j]), max(made.numbers[i], made.numbers[j]))
-        for i, j in watched_pairs(model)
+    left_out = {
+        (made.numbers[i], made.numbers[j]): reason
+        for (i, j), reason in pairs_left_out(model).items()
         if i in made.numbers and j in made.numbers
-    )
-    return Loaded(what, kinematics, joints, geoms, pairs, made.reports, _notes(model, joints))
+    }
+    made = made._replace(geoms=geoms)
+    return loaded(what, kinematics, joints, made, left_out, _notes(model, joints))
 
 
 def _read(given: Any) -> Any:
@@ -163,7 +167,7 @@ def _read(given: Any) -> Any:
     StandoffTypeError, StandoffError, FileNotFoundError
     """
     if isinstance(given, mujoco.MjModel):
-        return given
+        return copy.copy(given)  # what is changed in it later is not the robot's
     if not isinstance(given, str | Path):
         raise StandoffTypeError(
             f"model = {shown(given)}: give a mujoco.MjModel, or the path of an MJCF file.",
@@ -294,6 +298,7 @@ def _notes(model: Any, joints: Joints) -> tuple[str, ...]:
         )
     if model.nmocap:
         found.append(f"{model.nmocap} mocap bodies stand where the model has them")
+    found += _notes_of_pairs(model)
     free = [
         name
         for name, kind, at in zip(joints.names, joints.kinds, joints.q_at, strict=True)
@@ -302,3 +307,26 @@ def _notes(model: Any, joints: Joints) -> tuple[str, ...]:
     if free:
         found.append(f"without limits: {', '.join(free)}")
     return tuple(found)
+
+
+def _notes_of_pairs(model: Any) -> list[str]:
+    """Where the pairs are others than MuJoCo's, or than those of the same robot as a URDF file."""
+    found = []
+    watched = set(combinations(range(model.ngeom), 2)) - set(pairs_left_out(model))
+    more = len(watched - set(watched_pairs(model)))
+    if more:
+        found.append(
+            f"{counted(more, 'pair')} of bodies welded to a parent or child are watched: "
+            "MuJoCo takes the two bodies that are welded for one, and leaves them out"
+        )
+    bodies, parents = model.geom_bodyid, model.body_parentid
+    ends = [(int(bodies[g]), int(bodies[h])) for i, j in watched for g, h in ((i, j), (j, i))]
+    based = sorted({b for a, b in ends if a > 0 == model.body_weldid[a] and parents[b] == a})
+    if based and not model.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT):
+        names = ", ".join(model.body(b).name or f"body {b}" for b in based)
+        found.append(
+            f"the parents of {names} are fixed in the world: as MuJoCo does, it watches them with "
+            "these, which of a URDF file are left out as joined by a joint; <exclude> leaves them "
+            "out here"
+        )
+    return found

@@ -69,7 +69,7 @@ class MujocoContacts:
     def __init__(self, robot: Robot, pairs: Sequence[tuple[str, str]] | None = None) -> None:
         Near(robot, -math.inf, None)
         model, numbers = model_of(robot)
-        ours = _smooth(robot) if pairs is None else watched(robot, pairs)
+        ours = _smooth(robot, model, numbers) if pairs is None else watched(robot, pairs)
         self._mixed = {(i, j): mixed(model, numbers[i], numbers[j]) for i, j in ours}
         self._numbers = numbers
         self.rows: RobotRows | None = None
@@ -144,12 +144,17 @@ class MujocoContacts:
         stepped(self.model, data, self)
 
 
-def _smooth(robot: Robot) -> list[tuple[int, int]]:
-    """The pairs of which one cannot lie flat, and those with a body that MuJoCo does not have."""
+def _smooth(robot: Robot, model: Any, numbers: Sequence[int]) -> list[tuple[int, int]]:
+    """MuJoCo's pairs of which one cannot lie flat, and those with a body that it does not have."""
     reports = {report.name: report for report in robot.loaded.reports}
     geoms = [reports[name] for name in robot.geoms.names]
     ours = [geom.kind in POINTED or geom.became == GIVEN for geom in geoms]
-    return [(i, j) for i, j in sorted(robot.loaded.pairs) if ours[i] or ours[j]]
+    theirs = {frozenset(pair) for pair in watched_pairs(model)}
+    return [
+        (i, j)
+        for i, j in sorted(robot.loaded.pairs)
+        if (ours[i] or ours[j]) and frozenset((numbers[i], numbers[j])) in theirs
+    ]
 
 
 def _contact(distance: float, point: Array, normal: Array, pair: Mixed) -> Any:

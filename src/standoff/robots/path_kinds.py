@@ -16,6 +16,7 @@ from standoff.errors import StandoffError
 from standoff.read_only import KeepsReadOnly
 from standoff.robots.certify_tolerances import SPEED_SLACK
 from standoff.robots.kinematics import Kinematics
+from standoff.robots.motions import Motions
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -68,10 +69,11 @@ class JointPath(KeepsReadOnly, ABC):
 
 
 class StraightPath(JointPath):
-    """Waypoints, and between two of them a motion at constant joint velocities.
+    """Waypoints, and between two of them a motion at a constant velocity of the package's own.
 
-    That of ball joints and free joints is the package's own: ``integrate`` from one waypoint along
-    the ``difference`` to the next.
+    It is ``integrate`` from one waypoint along the ``difference`` to the next: of hinges and
+    slides a line in q. Pinocchio's free and planar joints go along a screw and an arc, as their
+    velocities are in axes that turn; MuJoCo's free joints along a line.
 
     Parameters
     ----------
@@ -143,7 +145,9 @@ class FunctionPath(NamedTuple):
     duration : float
         [s]
     speed : (nv,) array, or number for all
-        Greatest joint speeds: of a ball joint those of its turning, as in the package's velocities.
+        Greatest sizes of the numbers of the package's velocity v, by which its ``integrate`` goes:
+        they are not dq/dt. Of a ball joint those of its turning; of Pinocchio's free and planar
+        joints in the axes that turn with them.
     acceleration : (nv,) array, or number for all, optional
         Greatest derivatives of these velocities: with them fewer steps are needed.
     start : float
@@ -185,26 +189,37 @@ class BoundedPath(JointPath):
     def piece_speeds(self) -> Array:
         return self._speed[None]
 
-    def check_speeds(self, times: Array, q: Array) -> None:
+    def check_speeds(self, times: Array, q: Array, motions: Motions) -> None:
         """Refuse configurations at increasing times that are farther apart than the speeds allow.
+
+        Each motion is looked at by itself, and by its length where its velocity has several
+        numbers: in axes that turn, one number's part of the way is not its speed's.
 
         Raises
         ------
         StandoffError
         """
-        for k in range(len(times) - 1):
-            way = np.abs(self._kinematics.difference(q[k], q[k + 1]))
-            most = self._speed * (times[k + 1] - times[k])
-            slack = SPEED_SLACK * (1.0 + most + np.abs(q).max(initial=0.0))
-            if (way > most + slack).any():
-                j = int(np.argmax(way - most))
-                raise StandoffError(
-                    f"path: velocity {j} is {way[j] / (times[k + 1] - times[k]):.6g} between "
-                    f"{times[k]!r} and {times[k + 1]!r} s, but its greatest speed is given as "
-                    f"{self._speed[j]:.6g}: no proof would hold.",
-                    "speed",
-                    self._speed,
-                )
+        if len(times) < 2:
+            return
+        speeds = motions.rates(self._speed[None])[:, : motions.size]
+        spans = np.diff(times)[:, None]
+        differences = [self._kinematics.difference(a, b) for a, b in pairwise(q)]
+        ways = motions.least_ways(q, np.array(differences))
+        size = np.abs(q).max(axis=1, initial=0.0)[:-1, None]
+        excess = ways - speeds * spans
+        wrong = excess > SPEED_SLACK * (1.0 + speeds * spans + size)
+        if wrong.any():
+            k = int(np.argmax(wrong.any(axis=1)))
+            j = int(np.argmax(excess[k]))
+            at, count = int(motions.v_at[j]), int(motions.v_count[j])
+            which = f"velocity {at}" if count == 1 else f"velocity {at} to {at + count - 1}"
+            raise StandoffError(
+                f"path: {which} is {ways[k, j] / spans[k, 0]:.6g} between {times[k]!r} and "
+                f"{times[k + 1]!r} s, but its greatest speed is given as {speeds[0, j]:.6g}: no "
+                "proof would hold.",
+                "speed",
+                self._speed,
+            )
 
 
 def _waypoints(given: Any, kinematics: Kinematics) -> Array:

@@ -8,7 +8,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.path_kinds import BoundedPath, FunctionPath, JointPath, StraightPath
-from standoff.robots.spline_path import SplinePath
+from standoff.robots.spline_path import SplinePath, is_spline
 
 
 def joint_path(path: Any, kinematics: Kinematics, times: Any = None) -> JointPath:
@@ -21,7 +21,7 @@ def joint_path(path: Any, kinematics: Kinematics, times: Any = None) -> JointPat
     """
     if isinstance(path, JointPath):
         return path
-    if (hasattr(path, "x") and hasattr(path, "c")) or hasattr(path, "tck"):
+    if is_spline(path):
         if times is not None:
             raise StandoffError("times: a spline has its own.", "times", times)
         return SplinePath(path, kinematics)
@@ -31,7 +31,8 @@ def joint_path(path: Any, kinematics: Kinematics, times: Any = None) -> JointPat
         return BoundedPath(path, kinematics)
     if callable(path):
         raise StandoffTypeError(
-            f"path = {shown(path)}: of a function its greatest speeds must be known; give "
+            f"path = {shown(path)}: of a function, or of a spline that is no PPoly, BPoly or "
+            "BSpline of SciPy, the greatest speeds must be known; give "
             "so.robots.FunctionPath(function, duration, speed).",
             "path",
             path,

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Collection, Mapping, Sequence
+from itertools import combinations
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,14 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError, not_installed
 from standoff.robots.configurations import Configurations
 from standoff.robots.frames import jacobians_of
-from standoff.robots.geoms import Geoms
 from standoff.robots.joints import Joints
 from standoff.robots.kinematics import Motion
-from standoff.robots.loaded import Loaded
+from standoff.robots.loaded import Loaded, loaded
+from standoff.robots.mimics import Followed
 from standoff.robots.pinocchio_joints import Rows, read_joints
-from standoff.robots.pinocchio_shapes import read_shape
-from standoff.robots.shapes import Made, Meshes, Source, made_geoms
+from standoff.robots.pinocchio_shapes import Shape, read_shape
+from standoff.robots.report import NO_SUCH_PAIR
+from standoff.robots.shapes import Meshes, Source, made_geoms
 
 try:
     import coal  # noqa: F401 - its classes are those of the geometries
@@ -40,27 +42,42 @@ class PinocchioKinematics:
     model : pinocchio.Model
     """
 
-    def __init__(self, model: Any, joints: Joints, carriers: Ints, placements: Array) -> None:
-        """`carriers`: the model's joint of each moving geometry; `placements` in its frame."""
-        self.model, self.nq, self.nv = model, int(model.nq), int(model.nv)
+    def __init__(
+        self,
+        model: Any,
+        joints: Joints,
+        carriers: Ints,
+        placements: Array,
+        follows: Followed | None = None,
+    ) -> None:
+        """`carriers`: the model's joint of each moving geometry; `placements` in its frame.
+        `follows`: numbers of the model's q that are none of the robot's."""
+        self.model, self._follows = model, follows
+        self.nq = int(model.nq) if follows is None else len(follows.own_q)
+        self.nv = int(model.nv) if follows is None else len(follows.own_v)
         self._joints, self._carriers, self._placements = joints, carriers, placements
         self.check = Configurations(joints, self.nq, NEUTRAL)
         self._data, self._lock = model.createData(), threading.Lock()
         self._used, self._of = np.unique(carriers, return_inverse=True)
-        self.fold, columns = _folded(model)
-        self.support = np.zeros((len(carriers), self._data.J.shape[1]))
+        self.fold, columns = _folded(model, follows)
+        self.support = np.zeros((len(carriers), int(model.nvExtended)))
         for row, carrier in zip(self.support, carriers, strict=True):
             for joint in list(model.supports[int(carrier)])[1:]:  # 0 is the universe
                 row[columns[joint]] = 1.0
 
     def __reduce__(self) -> Any:
-        if self.fold is not None:
+        if self.model.nvExtended != self.model.nv:
             # Pinocchio 4.1 loses numbers of such joints when it stores them, and then crashes
             raise StandoffError(
                 f"The model {self.model.name!r} has joints that mimic others, which Pinocchio does "
                 "not store: load the robot again from its file."
             )
-        return PinocchioKinematics, (self.model, self._joints, self._carriers, self._placements)
+        own = self._joints, self._carriers, self._placements, self._follows
+        return PinocchioKinematics, (self.model, *own)
+
+    def _whole(self, q: Array) -> Array:
+        """The model's configuration."""
+        return np.asarray(q) if self._follows is None else self._follows.whole(np.asarray(q))
 
     def _placed(self) -> Array:
         places = self._data.oMi
@@ -69,29 +86,34 @@ class PinocchioKinematics:
 
     def poses(self, q: Array) -> Array:
         with self._lock:
-            pin.forwardKinematics(self.model, self._data, q)
+            pin.forwardKinematics(self.model, self._data, self._whole(q))
             return self._placed()
 
     def motion(self, q: Array) -> Motion:
         with self._lock:
             # its columns are about the world's origin, linear first
-            screws = np.array(pin.computeJointJacobians(self.model, self._data, q))
-            return Motion(self._placed(), screws)
+            screws = np.array(pin.computeJointJacobians(self.model, self._data, self._whole(q)))
+            # of one joint it is a vector
+            return Motion(self._placed(), screws.reshape(6, -1))
 
     def jacobians(self, q: Array) -> Array:
         return jacobians_of(self.motion(q), self.support, self.fold)
 
     def integrate(self, q: Array, v: Array) -> Array:
-        return np.asarray(pin.integrate(self.model, np.asarray(q), np.asarray(v)))
+        velocity = np.asarray(v) if self._follows is None else self._follows.fold @ np.asarray(v)
+        after = np.asarray(pin.integrate(self.model, self._whole(q), velocity))
+        return after if self._follows is None else after[self._follows.own_q]
 
     def difference(self, q0: Array, q1: Array) -> Array:
-        return np.asarray(pin.difference(self.model, np.asarray(q0), np.asarray(q1)))
+        way = np.asarray(pin.difference(self.model, self._whole(q0), self._whole(q1)))
+        return way if self._follows is None else way[self._follows.own_v]
 
     def neutral(self) -> Array:
-        return np.asarray(pin.neutral(self.model))
+        found = np.asarray(pin.neutral(self.model))
+        return found if self._follows is None else found[self._follows.own_q]
 
 
-def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
+def _folded(model: Any, follows: Followed | None) -> tuple[Array | None, dict[int, slice]]:
     """How v moves the columns of Pinocchio's Jacobian, and each joint's columns in it.
 
     Joints that mimic another have columns of their own, scaled, and none of v.
@@ -101,7 +123,7 @@ def _folded(model: Any) -> tuple[Array | None, dict[int, slice]]:
         for j in range(1, model.njoints)
     }
     if model.nvExtended == model.nv:
-        return None, columns
+        return None if follows is None else follows.fold, columns
     fold = np.zeros((model.nvExtended, model.nv))
     for j, own in columns.items():
         at = model.idx_vs[j]
@@ -129,58 +151,76 @@ def load(model: Any, geometry_model: Any, meshes: Meshes, skip: Sequence[str]) -
             "geometry_model",
             geometry_model,
         )
-    pairs = [(int(p.first), int(p.second)) for p in geometry_model.collisionPairs]
-    return assembled(model, geometry_model, pairs, (meshes, skip), what)
+    watched = {frozenset((int(p.first), int(p.second))) for p in geometry_model.collisionPairs}
+    model = model.copy()  # what is changed in it later is not the robot's
+    reading = Reading(what, None, {}, None, ())
+    return assembled(model, geometry_model, (meshes, skip), reading, watched)
+
+
+class Reading(NamedTuple):
+    """How a model was read.
+
+    Attributes
+    ----------
+    what : str
+        The model, for messages.
+    follows : Followed or None
+    shapes : mapping of str to Shape
+        What geometries are that only stand for others, by name.
+    left_out : callable or None
+        From the names of two links to why their pairs are not watched; None where they are.
+    notes : tuple of str
+    """
+
+    what: str
+    follows: Followed | None
+    shapes: Mapping[str, Shape]
+    left_out: Callable[[str, str], str | None] | None
+    notes: tuple[str, ...]
 
 
 def assembled(
     model: Any,
     geometry_model: Any,
-    pairs: Sequence[tuple[int, int]],
     choices: tuple[Meshes, Sequence[str]],
-    what: str,
-    kinds: dict[str, str] | None = None,
+    reading: Reading,
+    watched: Collection[frozenset[int]] | None = None,
 ) -> Loaded:
-    """A robot's data from a model, its geometries, and numbers of pairs of them.
-
-    ``kinds`` are those of geometries that only stand for others, by name.
-    """
-    rows = read_joints(model, what)
+    """A robot's data from a model and its geometries; ``watched`` are numbers of pairs of these,
+    where links do not say which are left out."""
+    rows = read_joints(model, reading.what, reading.follows)
     objects = geometry_model.geometryObjects
-    sources = [_source(model, rows, x, kinds or {}) for x in objects]
-    made = made_geoms(sources, *choices, what)
-    kept = list(made.numbers)
+    sources = [_source(model, rows, x, reading.shapes) for x in objects]
+    made = made_geoms(sources, *choices, reading.what)
     joints, moving = rows.joints, made.geoms.moving
+    kept = list(made.numbers)
     carriers = np.array([objects[kept[n]].parentJoint for n in moving], dtype=np.int64)
-    kinematics = PinocchioKinematics(model, joints, carriers, made.geoms.placements[moving])
-    return Loaded(
-        what, kinematics, joints, made.geoms, _kept_pairs(made, pairs), made.reports, rows.notes
+    kinematics = PinocchioKinematics(
+        model, joints, carriers, made.geoms.placements[moving], reading.follows
     )
+    reasons = {}
+    for i, j in combinations(range(len(kept)), 2):
+        if reading.left_out is not None:
+            reasons[i, j] = reading.left_out(made.geoms.links[i], made.geoms.links[j])
+        elif frozenset((kept[i], kept[j])) not in (watched or ()):
+            reasons[i, j] = NO_SUCH_PAIR
+    left_out = {pair: reason for pair, reason in reasons.items() if reason is not None}
+    notes = (*rows.notes, *reading.notes)
+    return loaded(reading.what, kinematics, joints, made, left_out, notes)
 
 
-def _kept_pairs(made: Made, pairs: Sequence[tuple[int, int]]) -> frozenset[tuple[int, int]]:
-    """Pairs by the numbers of the geometries that were kept, without two that stand still."""
-    still, found = made.geoms.joints < 0, set()
-    for i, j in pairs:
-        if i in made.numbers and j in made.numbers:
-            a, b = sorted((made.numbers[i], made.numbers[j]))
-            if not (still[a] and still[b]):
-                found.add((a, b))
-    return frozenset(found)
-
-
-def _source(model: Any, rows: Rows, given: Any, kinds: dict[str, str]) -> Source:
+def _source(model: Any, rows: Rows, given: Any, shapes: Mapping[str, Shape]) -> Source:
     """One geometry of a Pinocchio model."""
-    shape = read_shape(given.geometry)
+    shape = shapes[given.name] if given.name in shapes else read_shape(given.geometry)
     carrier = int(given.parentJoint)
     return Source(
         given.name,
         _link(model, given),
-        kinds.get(given.name, shape.kind),
+        shape.kind,
         int(rows.of_joints[carrier]),
         np.array(given.placement.homogeneous),
         not given.disableCollision,
-        () if given.name in kinds else shape.size,
+        shape.size,
         shape.mesh,
     )
 
@@ -193,4 +233,4 @@ def _link(model: Any, given: Any) -> str:
     return str(model.names[int(given.parentJoint)])
 
 
-__all__ = ["Geoms", "PinocchioKinematics", "assembled", "load"]
+__all__ = ["PinocchioKinematics", "Reading", "assembled", "load"]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError, not_installed
-from standoff.robots.joints import JointKind, Joints
+from standoff.robots.joints import SINGLE, JointKind, Joints
+from standoff.robots.mimics import Followed, read_as
 from standoff.robots.tolerances import UNLIMITED
 
 try:
@@ -22,6 +22,7 @@ Ints = NDArray[np.int64]
 
 X, Y, Z = np.eye(3)
 HINGE, SLIDE, CONTINUOUS = JointKind.HINGE, JointKind.SLIDE, JointKind.CONTINUOUS
+GLIDE = JointKind.GLIDE
 
 
 class Row(NamedTuple):
@@ -43,7 +44,7 @@ MOTIONS: dict[str, tuple[Row, ...]] = {
     "JointModelSpherical": (Row(JointKind.BALL, 0.0 * X),),
     "JointModelFreeFlyer": (Row(JointKind.FREE, 0.0 * X),),
     "JointModelTranslation": tuple(Row(SLIDE, a, k, k) for k, a in enumerate((X, Y, Z))),
-    "JointModelPlanar": (Row(SLIDE, X), Row(SLIDE, Y, 1, 1), Row(CONTINUOUS, Z, 2, 2)),
+    "JointModelPlanar": (Row(GLIDE, X), Row(GLIDE, Y, 1, 0), Row(CONTINUOUS, Z, 2, 2)),
     "JointModelSphericalZYX": tuple(Row(HINGE, a, k, k) for k, a in enumerate((Z, Y, X))),
 }
 """Of each kind of joint without a direction of its own."""
@@ -71,8 +72,8 @@ class Rows(NamedTuple):
     notes: tuple[str, ...]
 
 
-def read_joints(model: Any, what: str) -> Rows:
-    """The tree of a model's joints.
+def read_joints(model: Any, what: str, follows: Followed | None = None) -> Rows:
+    """The tree of a model's joints; ``follows`` says which read the numbers of others.
 
     Raises
     ------
@@ -81,19 +82,30 @@ def read_joints(model: Any, what: str) -> Rows:
     """
     of_joints = np.full(model.njoints, -1)
     names: list[str] = []
+    mimics: set[int] = set()
     rows: list[tuple[Row, int, Array, int, int]] = []
     for j in range(1, model.njoints):
         motions = _motions(model, j, what)
-        at_q, at_v = _begins(model, j)
+        at_q, at_v = int(model.idx_qs[j]), int(model.idx_vs[j])
+        if follows is not None:
+            master, ratio, offset = follows.mimics.get(j, (j, 1.0, 0.0))
+            at_q, at_v = int(follows.q_at[master]), int(follows.v_at[master])
+            if master != j:
+                motions = (motions[0]._replace(ratio=ratio, offset=offset),)
+                motions = (_of_master(model, (j, master), motions[0], what),)
+        if model.nqs[j] == 0 or (follows is not None and j in follows.mimics):
+            mimics.add(len(rows))
         parent, placement = int(of_joints[model.parents[j]]), model.jointPlacements[j].homogeneous
         for k, row in enumerate(motions):
             names.append(model.names[j] + (f"/{k}" if len(motions) > 1 else ""))
             rows.append((row, parent, np.array(placement), at_q + row.q, at_v + row.v))
             parent, placement = len(rows) - 1, np.eye(4)
         of_joints[j] = parent
-    lower, upper = (_limits(x, side) for x, side in _given_limits(model))
+    limits = (model.lowerPositionLimit, -np.inf), (model.upperPositionLimit, np.inf)
+    own = slice(None) if follows is None else follows.own_q
+    lower, upper = (_limits(x, side)[own] for x, side in limits)
     for row, _, _, q, _ in rows:
-        if row.kind not in (HINGE, SLIDE):
+        if row.kind not in SINGLE:
             first = q + (3 if row.kind == JointKind.FREE else 0)
             end = first + (2 if row.kind == CONTINUOUS else 4)
             lower[first:end], upper[first:end] = -np.inf, np.inf
@@ -110,6 +122,7 @@ def read_joints(model: Any, what: str) -> Rows:
         lower,
         upper,
         scalar_first=False,
+        mimics=frozenset(mimics),
     )
     return Rows(joints, of_joints, _notes(joints))
 
@@ -124,9 +137,9 @@ def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
         axis = np.array(joint.extract().axis, dtype=float)
         return (Row(ALONG_AXIS[kind], axis),)
     if kind == "JointModelRevoluteUnboundedUnaligned":
-        return (Row(CONTINUOUS, _unit_motion(model, j, [np.cos(1.0), np.sin(1.0)])[1]),)
+        return (Row(CONTINUOUS, _led(model, j, j, 1.0)[1]),)
     if kind == "JointModelMimic":
-        return (_mimicking(model, j, joint.extract()),)
+        return (_mimicking(model, j, what),)
     raise StandoffError(
         f"The joint {model.names[j]!r} of {what} is a {kind}, which is not known: build the model "
         "of joints that turn about an axis, slide, are spherical, planar or free.",
@@ -135,32 +148,38 @@ def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
     )
 
 
-def _mimicking(model: Any, j: int, joint: Any) -> Row:
-    """The motion of a joint that mimics another of one number."""
-    ratio, offset = float(joint.scaling), float(joint.offset)
-    kind, axis = _unit_motion(model, j, [(1.0 - offset) / ratio])
-    return Row(kind, axis, 0, 0, ratio, offset)
+def _of_master(model: Any, pair: tuple[int, int], row: Row, what: str) -> Row:
+    """The row of a joint that follows another: it reads what that one has in q."""
+    names = model.names[pair[0]], model.names[pair[1]]
+    kind = read_as(row.kind, int(model.nqs[pair[1]]), row.ratio, names, what)
+    return row._replace(kind=kind)
 
 
-def _unit_motion(model: Any, j: int, numbers: Sequence[float]) -> tuple[JointKind, Array]:
-    """Kind and axis of a joint, read from where its numbers for one radian or length lead it:
-    Pinocchio does not tell all axes."""
-    data, q, at = model.createData(), pin.neutral(model), int(model.idx_qs[j])
-    q[at : at + len(numbers)] = numbers
+def _mimicking(model: Any, j: int, what: str) -> Row:
+    """The motion of a joint that mimics another of one number, or of (cos, sin)."""
+    joint = model.joints[j].extract()
+    ratio, offset, at = float(joint.scaling), float(joint.offset), int(model.idx_qs[j])
+    master = next(i for i in range(1, model.njoints) if model.idx_qs[i] == at and model.nqs[i])
+    kind, axis, way = _led(model, master, j, (1.0 - offset) / ratio if ratio else 0.0)
+    # one that follows by 0 stands where its offset leads it
+    row = Row(kind, axis, 0, 0, ratio, offset if ratio else way)
+    return _of_master(model, (j, master), row, what)
+
+
+def _led(model: Any, master: int, j: int, number: float) -> tuple[JointKind, Array, float]:
+    """Kind and axis of a joint, and how far along it the number of a joint leads it: Pinocchio
+    does not tell all axes."""
+    data, q, at = model.createData(), pin.neutral(model), int(model.idx_qs[master])
+    q[at : at + model.nqs[master]] = (
+        number if model.nqs[master] == 1 else (np.cos(number), np.sin(number))
+    )
     pin.forwardKinematics(model, data, q)
     base = data.oMi[model.parents[j]] * model.jointPlacements[j]
     way = pin.log6(base.actInv(data.oMi[j]))
-    turns = np.linalg.norm(way.angular) > 0.5
-    axis = np.array(way.angular if turns else way.linear)
-    return (HINGE if turns else SLIDE), axis / np.linalg.norm(axis)
-
-
-def _begins(model: Any, j: int) -> tuple[int, int]:
-    return int(model.idx_qs[j]), int(model.idx_vs[j])
-
-
-def _given_limits(model: Any) -> list[tuple[Any, float]]:
-    return [(model.lowerPositionLimit, -np.inf), (model.upperPositionLimit, np.inf)]
+    turn, shift = float(np.linalg.norm(way.angular)), float(np.linalg.norm(way.linear))
+    if turn > shift:
+        return HINGE, way.angular / turn, turn
+    return SLIDE, way.linear / shift if shift else X, shift
 
 
 def _limits(given: Any, none: float) -> Array:
@@ -169,7 +188,7 @@ def _limits(given: Any, none: float) -> Array:
 
 
 def _notes(joints: Joints) -> tuple[str, ...]:
-    single = np.isin(joints.kinds, [HINGE, SLIDE])
+    single = np.isin(joints.kinds, SINGLE)
     ends = joints.upper[joints.q_at] - joints.lower[joints.q_at]
     free = [
         name

@@ -14,6 +14,11 @@ EXACT, HULL, GIVEN, SKIPPED, UNSEEN = "exact", "hull", "given", "skipped", "does
 """What may become of a geometry: its exact shape, the hull of its mesh, a body that the user gave,
 left out by the user, or left out since the model watches no pair of it."""
 
+RIGID = "rigid to each other"
+STILL = "both stand still"
+NO_SUCH_PAIR = "no collision pair of the model"
+"""Why a pair may not be watched; packages have reasons of their own beside these."""
+
 
 class GeomReport(NamedTuple):
     """What became of one geometry.
@@ -47,6 +52,10 @@ class RobotReport(NamedTuple):
         Of all geometries of the model, in its order, and of the obstacles.
     pairs : tuple of (str, str)
         Names of the geometries of all pairs that are watched.
+    left_out : tuple of (str, str, str)
+        Names of all pairs that are not watched, and why.
+    overlapping : tuple of (str, str)
+        Pairs that are watched and overlap at the model's own zero: no path through it is proven.
     notes : tuple of str
         What else should be known, such as joints that are not limited.
     """
@@ -55,6 +64,8 @@ class RobotReport(NamedTuple):
     joints: tuple[str, ...]
     geoms: tuple[GeomReport, ...]
     pairs: tuple[tuple[str, str], ...]
+    left_out: tuple[tuple[str, str, str], ...]
+    overlapping: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
 
     def __str__(self) -> str:
@@ -63,7 +74,7 @@ class RobotReport(NamedTuple):
         lines = [
             f"{self.source}: {counted(len(self.joints), 'joint')}, "
             f"{counted(len(self.geoms), 'geometry', 'geometries')} ({summary}), "
-            f"{counted(len(self.pairs), 'pair')} watched"
+            f"{counted(len(self.pairs), 'pair')} watched, {len(self.left_out)} not"
         ]
         rows = [("geometry", "link", "kind", "became", "gap")]
         rows += [(g.name, g.link, g.kind, g.became, _gap(g)) for g in self.geoms]
@@ -72,6 +83,9 @@ class RobotReport(NamedTuple):
             "  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip()
             for row in rows
         ]
+        reasons = Counter(_kind_of(reason) for *_, reason in self.left_out)
+        lines += [f"not watched: {counted(n, 'pair')} {reason}" for reason, n in reasons.items()]
+        lines += [f"overlap at the model's zero: {a} and {b}" for a, b in self.overlapping]
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
 
 
@@ -85,6 +99,11 @@ def of_obstacles(obstacles: Obstacles) -> tuple[GeomReport, ...]:
 
 def _kind(body: Shape | Compound) -> str:
     return "compound" if isinstance(body, Compound) else str(body.name)
+
+
+def _kind_of(reason: str) -> str:
+    """A reason without the name that it ends with."""
+    return reason.split(" '", maxsplit=1)[0]
 
 
 def _gap(geom: GeomReport) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from standoff.robots.joints import Joints
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.loaded import Loaded
 from standoff.robots.obstacles import Obstacles, with_obstacles
-from standoff.robots.report import RobotReport, of_obstacles
+from standoff.robots.report import STILL, RobotReport, of_obstacles
 from standoff.robots.rows import Mounted, RobotRows
 from standoff.shown_names import hides
 from standoff.wording import counted
@@ -71,12 +72,25 @@ class RobotModel(KeepsReadOnly):
         return [(names[i], names[j]) for i, j in self._horizons.pairs.tolist()]
 
     def report(self) -> RobotReport:
-        """What became of every geometry, and which pairs are watched."""
+        """What became of every geometry, which pairs are watched, and why others are not."""
+        names = self.geoms.names
+        watched = set(map(tuple, self._horizons.pairs.tolist()))
+        reasons = self.loaded.left_out
+        overlapping: list[tuple[str, str]] = []
+        if watched:
+            rows = self._rows(self.kinematics.check(self.kinematics.neutral()), self.world)
+            overlapping = [rows.names[k] for k in np.flatnonzero(rows.distance < 0.0).tolist()]
         return RobotReport(
             self.loaded.source,
             self.joints.names,
             self.loaded.reports + of_obstacles(self.obstacles),
             tuple(self.pairs),
+            tuple(
+                (names[i], names[j], reasons.get((i, j), STILL))
+                for i, j in combinations(range(len(names)), 2)
+                if (i, j) not in watched
+            ),
+            tuple(overlapping),
             self.loaded.notes,
         )
 
@@ -84,9 +98,8 @@ class RobotModel(KeepsReadOnly):
         """Names of the joints that a configuration (nq,) has outside their limits."""
         q = self.kinematics.check(q)
         wrong = np.flatnonzero((q < self.lower) | (q > self.upper))
-        at = np.searchsorted(np.sort(self.joints.q_at), wrong, side="right") - 1
-        order = np.argsort(self.joints.q_at, kind="stable")
-        return tuple(dict.fromkeys(self.joints.names[order[k]] for k in at))
+        owners = (self.joints.owner(i) for i in wrong.tolist())
+        return tuple(dict.fromkeys(self.joints.names[j] for j in owners))
 
     def poses(self, q: Any) -> Array:
         """(n, 4, 4) world poses of all geometries, in the order of ``geoms``."""

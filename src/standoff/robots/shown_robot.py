@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.robots.joints import JointKind, Joints
+from standoff.robots.joints import SINGLE, JointKind, Joints
 from standoff.robots.path_kinds import JointPath
 from standoff.robots.paths import joint_path
 from standoff.robots.proof import PathProof
@@ -147,11 +147,11 @@ def _sliders(joints: Joints, Q: Array, size: float) -> tuple[Slider, ...]:
     """One for each number of q that is an angle or a length; its limits, and all that is shown."""
     found: dict[int, Slider] = {}
     # A joint that mimics another has that one's number: it is named by the one that it follows.
-    for j in np.argsort(joints.ratios != 1.0, kind="stable").tolist():
+    for j in (j for j in range(len(joints.names)) if j not in joints.mimics):
         kind, k = JointKind(joints.kinds[j]), int(joints.q_at[j])
         if kind is JointKind.CONTINUOUS:
             found.setdefault(k, Slider(joints.names[j], k, True, -math.pi, math.pi))
-        if kind not in (JointKind.HINGE, JointKind.SLIDE) or k in found:
+        if kind not in SINGLE:
             continue
         reach = math.pi if kind is JointKind.HINGE else size
         low, high = float(joints.lower[k]), float(joints.upper[k])

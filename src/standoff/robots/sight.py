@@ -142,7 +142,7 @@ class Sight:
         length += float(ways[: motions.size][shifts].sum())
         for k in np.flatnonzero(shifts).tolist():
             at = int(motions.q_at[k])
-            length += float(np.abs(q[at : at + int(motions.v_count[k])]).sum())
+            length += float(np.abs(q[at : at + int(motions.q_count[k])]).sum())
         joints = float(np.abs(q).max(initial=0.0) + ways.max(initial=0.0)) + time * speed
         count = motions.size + 1
         return EPS * count * length * (KINEMATICS_ROUNDINGS + PATH_ROUNDINGS * joints)

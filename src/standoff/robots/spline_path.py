@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -20,18 +19,17 @@ Ints = NDArray[np.int64]
 class SplinePath(JointPath):
     """A piecewise polynomial of SciPy: ``CubicSpline``, ``PchipInterpolator``, ``BSpline``, ...
 
-    Only of robots whose joints are hinges and slides.
+    Only of robots whose joints are hinges and slides. It is read by its class, from the first to
+    the last of its knots, whatever it says of times beyond them.
 
     Parameters
     ----------
-    spline : PPoly or BSpline
+    spline : PPoly, BPoly or BSpline
         From times to configurations (nq,).
     kinematics : Kinematics
     """
 
     def __init__(self, spline: Any, kinematics: Kinematics) -> None:
-        from scipy.interpolate import BSpline
-
         if kinematics.nq != kinematics.nv:
             raise StandoffError(
                 "A spline in q leaves the unit quaternions of ball joints and free joints: give "
@@ -39,7 +37,7 @@ class SplinePath(JointPath):
                 "path",
                 spline,
             )
-        x, c = _powers(spline) if isinstance(spline, BSpline) else (spline.x, spline.c)
+        x, c = _read(spline)
         if c.ndim != 3 or c.shape[2] != kinematics.nq:
             raise StandoffError(
                 f"The spline's values have the shape {tuple(c.shape[2:])}: give one of "
@@ -95,12 +93,66 @@ class SplinePath(JointPath):
         return total * (1.0 + SPEED_SLACK)
 
 
-def _powers(spline: Any) -> tuple[Array, Array]:
-    """A B-spline's knots, and its coefficients by powers, the highest first (k + 1, n, nq)."""
-    k = spline.k
-    x = np.unique(spline.t[k : len(spline.t) - k])
-    rows = [spline.derivative(m)(x[:-1]) / math.factorial(m) for m in range(k, 0, -1)]
-    return x, np.stack([*rows, spline(x[:-1])])
+def is_spline(path: Any) -> bool:
+    """Is it of a class that `SplinePath` reads?"""
+    from scipy.interpolate import BPoly, BSpline, PPoly
+
+    return isinstance(path, PPoly | BPoly | BSpline)
+
+
+def _read(spline: Any) -> tuple[Array, Array]:
+    """Knots (n + 1,), which do not fall, and coefficients by powers of the time from the knot
+    before, the highest first (k + 1, n, nq).
+
+    Raises
+    ------
+    StandoffError
+        Complex numbers, knots that fall.
+    """
+    from scipy.interpolate import BPoly, BSpline, PPoly
+
+    if np.iscomplexobj(spline.c):
+        raise StandoffError(
+            f"The spline's coefficients are of {spline.c.dtype}: give real ones.", "path", spline
+        )
+    x = np.asarray(spline.t if isinstance(spline, BSpline) else spline.x, dtype=float)
+    falls = np.flatnonzero(np.diff(x) < 0.0)
+    if len(falls):
+        k = int(falls[0])
+        raise StandoffError(
+            f"The spline's times fall, from {float(x[k])!r} to {float(x[k + 1])!r}: give one whose "
+            "times rise.",
+            "path",
+            spline,
+        )
+    if isinstance(spline, BSpline):
+        return _powers(x, np.asarray(spline.c, dtype=float), int(spline.k))
+    powers = PPoly.from_bernstein_basis(spline) if isinstance(spline, BPoly) else spline
+    return x, np.asarray(powers.c, dtype=float)
+
+
+def _powers(t: Array, c: Array, k: int) -> tuple[Array, Array]:
+    """A B-spline's knots, and its coefficients by powers.
+
+    By de Boor's algorithm in each piece alone: where knots are repeated the spline may be without
+    derivatives, or even jump, and the pieces are polynomials still.
+    """
+    at = k + np.flatnonzero(np.diff(t[k : len(t) - k]) > 0.0)
+    rest = (1,) * (c.ndim - 1)
+    rows, factor = [], 1.0
+    points = [c[at - k + j] for j in range(k + 1)]  # of the m-th derivative, of degree k - m
+    for m in range(k + 1):
+        value, p = list(points), k - m
+        for r in range(1, p + 1):
+            for j in range(p, r - 1, -1):
+                left, right = t[at - p + j], t[at + 1 + j - r]
+                part = ((t[at] - left) / (right - left)).reshape(-1, *rest)
+                value[j] = (1.0 - part) * value[j - 1] + part * value[j]
+        rows.append(value[p] / factor)
+        factor *= m + 1.0
+        spans = [(t[at + 1 + j] - t[at - p + 1 + j]).reshape(-1, *rest) for j in range(p)]
+        points = [p * (points[j + 1] - points[j]) / spans[j] for j in range(p)]
+    return np.append(t[at], t[at[-1:] + 1]), np.stack(rows[::-1])
 
 
 def _derived(c: Array) -> Array:

@@ -16,6 +16,10 @@ WIDER = 8.0
 """Factor from one horizon to the next while no pair is found, no unit: the bodies are within a few
 of them, and each costs a world that is kept."""
 
+SAME_READING = 1e-9
+"""By how much a size or place in what a package read of a file may differ from the file, length or
+no unit, relative to 1 and to itself: rounding leaves 1e-15; more is another number."""
+
 UNLIMITED = 1e30
 """Limits of q beyond this, rad or length, are none: packages write large numbers for them."""
 

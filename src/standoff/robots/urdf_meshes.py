@@ -5,33 +5,33 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from standoff.errors import StandoffError
+from standoff.robots.pinocchio_shapes import Shape
 from standoff.robots.report import HULL
 from standoff.robots.shapes import MOST_NAMED, Meshes
+from standoff.robots.urdf_xml import UNUSED
+from standoff.robots.urdf_xml import Collision as Element
 
+Shapes = Mapping[str, Shape]
+"""By name: geometries for which others stand."""
 PACKAGE = "package://"
 
 
-def collisions(root: Any) -> Iterator[tuple[str, str, Any]]:
-    """(name as Pinocchio gives it, link, geometry element) of all collision elements."""
-    for link in root.iter("link"):
-        name = link.get("name", "")
-        for k, collision in enumerate(link.findall("collision")):
-            geometry = collision.find("geometry")
-            if geometry is not None:
-                yield f"{name}_{k}", name, geometry
-
-
 def stand_ins(
-    root: Any, meshes: Meshes, skip: Collection[str], places: tuple[Path, Sequence[str]]
-) -> tuple[Any, dict[str, str]]:
-    """The file with a sphere in place of each mesh that needs not be read, and their kinds by name.
+    root: Any,
+    collisions: Sequence[Element],
+    meshes: Meshes,
+    skip: Collection[str],
+    places: tuple[Path, Sequence[str]],
+) -> tuple[Any, Shapes]:
+    """The file with a sphere in place of each mesh that needs not be read, and what these are, by
+    name; and without what says nothing of where geometry is.
 
-    Those that are skipped, stood for by bodies, or refused later need no file.
+    Meshes that are skipped, stood for by bodies, or refused later need no file.
 
     Raises
     ------
@@ -39,20 +39,22 @@ def stand_ins(
         Files of meshes that are not there; all are named.
     """
     changed = copy.deepcopy(root)
-    kinds: dict[str, str] = {}
+    shapes: dict[str, Shape] = {}
     missing: list[str] = []
-    for name, link, geometry in collisions(changed):
-        mesh = geometry.find("mesh")
-        if mesh is None:
-            continue
-        if _read(name, link, meshes, skip):
-            file = mesh.get("filename", "")
+    elements = (each.find("geometry") for each in changed.iterfind("link/collision"))
+    for element, (name, link, kind, *_) in zip(elements, collisions, strict=True):
+        shape = element.find(kind)
+        if kind == "mesh" and _read(name, link, meshes, skip):
+            file = shape.get("filename", "")
             if _found(file, *places) is None:
                 missing.append(f"  {name!r} on link {link!r}: {file}")
-            continue
-        kinds[name] = "mesh"
-        geometry.remove(mesh)
-        geometry.append(mesh.makeelement("sphere", {"radius": "1"}))
+        elif kind == "mesh":
+            shapes[name] = Shape(kind)
+            element.remove(shape)
+            element.append(shape.makeelement("sphere", {"radius": "1"}))
+    for above in (changed, *changed.iterfind("link"), *changed.iterfind("link/collision")):
+        for element in [x for x in above if x.tag in ("visual", *UNUSED)]:
+            above.remove(element)
     if missing:
         more = [f"  and {len(missing) - MOST_NAMED} more"] if len(missing) > MOST_NAMED else []
         lines = "\n".join([*missing[:MOST_NAMED], *more])
@@ -61,7 +63,7 @@ def stand_ins(
             "folder that has the packages], or leave them out by skip=[name].",
             "package_dirs",
         )
-    return changed, kinds
+    return changed, shapes
 
 
 def _read(name: str, link: str, meshes: Meshes, skip: Collection[str]) -> bool:

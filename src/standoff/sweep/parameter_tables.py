@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from standoff.robots.joints import JointKind, Joints
+from standoff.robots.joints import SLIDES, JointKind
 from standoff.robots.limits import check_limits
 from standoff.scene.degrees import ENDING, with_degrees
 from standoff.scene.reader import Table, unknown_name
@@ -101,11 +101,11 @@ def _of_joint(name: str, table: Table, subject: RobotSubject, kind: str) -> Para
             f"'{joint}' is a {told} joint: parameters move those that turn about an axis or slide",
             "joint",
         )
-    leader = _leader(joints, j)
+    leader = joints.owner(int(joints.q_at[j]))
     if leader != j:
         first = subject.movable[leader]
         raise table.error(f"'{joint}' follows the joint '{first}': move that one", "joint")
-    what = SLIDE if joints.kinds[j] == JointKind.SLIDE else ANGLE
+    what = SLIDE if joints.kinds[j] in SLIDES else ANGLE
     q = int(joints.q_at[j])
     limits = float(joints.lower[q]), float(joints.upper[q])
     found = _ranged(table, Parameter(name, joint, what), kind, limits)
@@ -113,13 +113,6 @@ def _of_joint(name: str, table: Table, subject: RobotSubject, kind: str) -> Para
         for key, end in (("from", found.low), ("to", found.high)):
             table.build(partial(_check_end, subject, found, end), _given(table, key))
     return found
-
-
-def _leader(joints: Joints, j: int) -> int:
-    """The joint whose number a joint reads: another's, of one that mimics it."""
-    same = np.flatnonzero(joints.q_at == joints.q_at[j])
-    own = (joints.ratios[same] == 1.0) & (joints.offsets[same] == 0.0)
-    return int(same[np.argmax(own)]) if len(same) > 1 else j
 
 
 def _check_end(subject: RobotSubject, parameter: Parameter, end: float) -> None:

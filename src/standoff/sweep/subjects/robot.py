@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
-from standoff.robots.joints import JointKind
+from standoff.robots.joints import SINGLE, JointKind
 from standoff.robots.limits import check_limits
 from standoff.robots.robot import Robot
 from standoff.sweep.parameters import Parameter
@@ -23,7 +23,7 @@ from standoff.world.answer import WorldAnswer
 
 Array = NDArray[np.float64]
 
-ONE_NUMBER = (JointKind.HINGE, JointKind.SLIDE, JointKind.CONTINUOUS)
+ONE_NUMBER = (*SINGLE, JointKind.CONTINUOUS)
 """Joints that a parameter can move."""
 
 
