@@ -15,6 +15,7 @@ from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.robots.answer import RobotAnswer
 from standoff.robots.robot import Robot
+from standoff.wording import at_least
 
 
 def run_robot(command: RobotCommand) -> int:
@@ -63,7 +64,7 @@ def _lines(
     return [
         *lines,
         f"nearest at {where}: {a} ({link_a}) - {b} ({link_b}), {nearest.distance:.9g}",
-        f"proven for all pairs: {nearest.clearance:.9g}",
+        f"proven for all pairs: {at_least(nearest.clearance, 9)}",
     ]
 
 

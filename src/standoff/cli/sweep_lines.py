@@ -18,7 +18,7 @@ from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.proximity import shown_size
 from standoff.tracking.status import BY_NUMBER
-from standoff.wording import counted, printable
+from standoff.wording import at_least, counted, printable
 
 FIRST_ROWS = 5
 """Worst rows that are printed; the report has all that the job keeps."""
@@ -91,8 +91,8 @@ def _spread(spread: Spread, unit: str) -> str:
         return "none"
     mean = spread.sum / spread.count
     return (
-        f"{spread.least:.6g} {unit} (row {spread.least_row}) to {spread.most:.6g} {unit} "
-        f"(row {spread.most_row}), mean {mean:.6g} {unit}"
+        f"{at_least(spread.least)} {unit} (row {spread.least_row}) to {at_least(spread.most)} "
+        f"{unit} (row {spread.most_row}), mean {mean:.6g} {unit}"
     )
 
 
@@ -144,7 +144,7 @@ def named(job: Job, numbers: Array) -> str:
 
 def _below(below: Listed, length: float, unit: str) -> str:
     if not below.count:
-        return f"no row: all are proven to be {length:g} {unit} or more apart"
+        return f"no row: all are proven to be {at_least(length)} {unit} or more apart"
     rows = counted(below.count, "row is", "rows are")
     told = f"{rows} not proven to be {length:g} {unit} apart"
     listed = len(below.rows.row)

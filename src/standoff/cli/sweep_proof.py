@@ -25,7 +25,7 @@ from standoff.sweep.proof.estimate import ProofEstimate, estimated_proof
 from standoff.sweep.proof.proof import Proof
 from standoff.sweep.proof.report import ProofReport, proof_facts
 from standoff.sweep.proof.summary import Kind, Places
-from standoff.wording import counted
+from standoff.wording import at_least, counted
 
 ASKED = "clearance="
 JSON_PLACES = 10
@@ -112,7 +112,7 @@ def proof_lines(report: ProofReport, folder: Path) -> list[str]:
         *(line(kind.name.lower(), _share(report, kind)) for kind in Kind),
     ]
     if math.isfinite(found.bound):
-        lines.append(line("bound", f"nowhere nearer than {found.bound:.6g} {unit}; proven"))
+        lines.append(line("bound", f"nowhere nearer than {at_least(found.bound)} {unit}; proven"))
     missed = "" if not found.uncertified else f", {grouped(found.uncertified)} not certified"
     lines.append(line("queries", f"{grouped(found.queries)}{missed}"))
     lines += _places(proof, "nearest", found.nearest.places)
@@ -150,7 +150,7 @@ def _places(proof: Proof, name: str, places: Places) -> list[str]:
         if name == "open" and not math.isfinite(distance):
             told = f"not asked, around {named(proof.job, places.numbers[k])}"
         elif name == "open":
-            told += f", {bound:.6g} {unit} proven around it"
+            told += f", {at_least(bound)} {unit} proven around it"
         lines.append(line(name if k == 0 else "", told))
     return lines
 

@@ -18,7 +18,7 @@ from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.pair_plot import plot as pair_figure
 from standoff.tracking.status import BY_NUMBER
 from standoff.version import __version__
-from standoff.wording import counted, printable
+from standoff.wording import at_least, counted, printable
 
 DRAWN = 12
 """Worst rows that are drawn: a screen or two of pictures, each of some tenths of a second."""
@@ -75,7 +75,7 @@ def _grouped(number: int) -> str:
 
 
 def _length(number: float, unit: str) -> str:
-    return f"{number:.6g} {escape(unit)}".rstrip()
+    return f"{at_least(number)} {escape(unit)}".rstrip()
 
 
 def _summary(report: Report) -> str:
@@ -216,7 +216,7 @@ def _rows(job: Job, rows: Rows) -> str:
     heads += ["status", *(["nearest pair"] if several else [])]
     body = []
     for k, row in enumerate(first.row.tolist()):
-        cells = [str(row), f"{first.distance[k]:.6g}", f"{first.lower_bound[k]:.6g}"]
+        cells = [str(row), f"{first.distance[k]:.6g}", at_least(first.lower_bound[k])]
         cells += [f"{number:.6g}" for number in numbers[k].tolist()]
         cells.append(BY_NUMBER[int(first.status[k])].name)
         pair = pairs[k]
