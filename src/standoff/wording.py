@@ -7,6 +7,7 @@ import json
 import math
 import re
 import unicodedata
+from collections.abc import Callable
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 
 NAME_SHOWN = 20
@@ -61,9 +62,11 @@ def short_name(name: str) -> str:
     return name if len(name) <= NAME_SHOWN else name[: NAME_SHOWN - 1] + "…"
 
 
-def counted(number: int, one: str, many: str = "") -> str:
-    """Return a number with its noun, such as "1 frame" and "2 frames"."""
-    return f"{number} {one if number == 1 else many or one + 's'}"
+def counted(
+    number: int, one: str, many: str = "", write: Callable[[int], str] = "{}".format
+) -> str:
+    """Return a number, as `write` writes it, with its noun: "1 frame" and "2 frames"."""
+    return f"{write(number)} {one if number == 1 else many or one + 's'}"
 
 
 MOST_DIGITS = 15

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import standoff as standoff_package
 from draws import draws
 from standoff.cli.arguments import OWN
 from standoff.wording import at_least, at_most, counted
@@ -77,6 +78,41 @@ def test_one_is_no_plural() -> None:
     told = [counted(n, "query", "queries") for n in (0, 1, 2)]
     assert told == ["0 queries", "1 query", "2 queries"]
     assert counted(1, "frame") == "1 frame"
+
+
+# A number written before a noun by itself would be "1 parts".
+SOURCE = Path(standoff_package.__file__).parent
+REPORTS = ("automaton", "cad", "clearance", "cli", "servo", "sweep")
+UNCOUNTED = re.compile(
+    r"\{(?:len\([^{}]*\)|_?grouped\([^{}]*\)|[\w.]+)\} (?:more )?([a-z]+)\b"
+)
+COUNTED = re.compile(r"""counted\([^"']*["']([a-z ]+)["']""")
+NEVER_ONE = {
+    ("automaton/branch_text.py", "switch"): "more than can be listed",
+    ("automaton/picture.py", "feature"): "shown where not all of several are",
+    ("automaton/picture.py", "mode"): "as many as fill a picture",
+    ("cad/making.py", "face"): "more than can be read",
+    ("cli/summary.py", "event"): "the first eight",
+    ("cli/summary.py", "part"): "what a translation does",
+    ("sweep/reading.py", "row"): "more than can be swept",
+    ("sweep/subject_tables.py", "pair"): "of which one must be named",
+}
+"""Where such a number is more than one, or the word no noun."""
+
+
+def test_what_is_counted_in_reports_is_no_plural_of_one() -> None:
+    files = [file for part in REPORTS for file in sorted((SOURCE / part).rglob("*.py"))]
+    texts = {file.relative_to(SOURCE).as_posix(): file.read_text("utf-8") for file in files}
+    nouns = {noun.split()[-1] for text in texts.values() for noun in COUNTED.findall(text)}
+    assert {"row", "pair", "part"} <= nouns
+    many = {noun + end: noun for noun in nouns for end in ("s", "es")}
+    found = {
+        (name, many[word])
+        for name, text in texts.items()
+        for word in UNCOUNTED.findall(text)
+        if word in many
+    }
+    assert found == set(NEVER_ONE)
 
 
 @pytest.mark.parametrize(

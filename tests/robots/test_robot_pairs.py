@@ -114,6 +114,17 @@ def test_pairs_of_a_urdf_are_all_but_neighbours_and_the_disabled(name: str) -> N
     assert {frozenset(pair) for pair in robot.pairs} == expected
 
 
+@pytest.mark.parametrize(
+    "given",
+    [np.zeros((100, 3)), {"post": np.zeros((100, 3))}, {"post": (np.zeros((100, 3)), np.eye(4))}],
+)
+def test_an_array_is_no_obstacle_and_is_not_printed(given: object) -> None:
+    with pytest.raises(so.StandoffError, match="an array of 100 by 3 numbers") as caught:
+        exact_robot(next(iter(EXACT))).with_obstacles(given)
+    assert "0., 0., 0.], [0., 0., 0.]" not in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_obstacles_are_pairs_with_all_that_moves(tmp_path: Path) -> None:
     path = tmp_path / "arms.urdf"
     path.write_text(URDF.format(grip="revolute"))

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from standoff.c_interface.layout import layout_header
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.kernels.compiler.notices import say
 from standoff.whole_files import MissingFolder, file_name, write_whole
@@ -95,7 +96,7 @@ def _compiler(given: str | None) -> list[str]:
     words = shlex.split(given or os.environ.get(COMPILER) or "cc")
     if not words or shutil.which(words[0]) is None:
         raise StandoffError(
-            f"There is no C compiler {' '.join(words)!r}: install one (on Debian: apt install "
+            f"There is no C compiler {shown(' '.join(words))}: install one (on Debian: apt install "
             f"gcc), or name it in {COMPILER}."
         )
     return words

@@ -34,7 +34,7 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     if isinstance(value, np.ndarray) and value.size > SHOWN_NUMBERS:
         return f"an array of {' by '.join(map(str, value.shape))} numbers"
     try:
-        text = repr(value)
+        text = _items(value) or repr(value)
     except RecursionError:
         return f"a {type(value).__name__} nested too deeply to be shown"
     except ValueError:
@@ -44,6 +44,16 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
         text = hex(value)
     text = _LINE_ENDS.sub(" ", text)  # an array's rows; those in a string are escapes already
     return text if len(text) <= characters else text[: characters - 1] + "…"
+
+
+def _items(value: Any) -> str:
+    """What is shown of a short tuple or list with arrays in it, each by itself; else nothing."""
+    if type(value) not in (tuple, list) or len(value) > SHOWN_NUMBERS:
+        return ""
+    if not any(isinstance(item, np.ndarray) for item in value):
+        return ""
+    before, after = repr(type(value)())
+    return before + ", ".join(map(shown, value)) + after
 
 
 _LINE_ENDS = re.compile(r"\s*\n\s*")

@@ -132,8 +132,8 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         when = f"at {looked.start:g} s"
     else:
         when = (
-            f"in {looked.frames} frames from {looked.start:g} s to {looked.end:g} s (nothing is "
-            "said between them)"
+            f"in {counted(looked.frames, 'frame')} from {looked.start:g} s to {looked.end:g} s "
+            "(nothing is said between them)"
         )
     verdicts = ", ".join(
         f'{n} <span class="mark {verdict.name}">{verdict.name}</span>'

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from standoff import __version__
+from standoff.checks.real_numbers import shown
 from standoff.cli.arguments import RobotCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
@@ -46,7 +47,7 @@ def _numbers(text: str) -> Any:
     try:
         return np.array([float(part) for part in text.replace(",", " ").split()])
     except ValueError as error:
-        raise CommandError(f"--q: give numbers, such as '0 0.5 -1', not {text!r}") from error
+        raise CommandError(f"--q: give numbers, such as '0 0.5 -1', not {shown(text)}") from error
 
 
 def _lines(

@@ -22,7 +22,7 @@ from standoff.scene import SceneError
 from standoff.scene.simulation import SimulationScene, load_simulation
 from standoff.servo import Servo, ServoReport
 from standoff.simulation.device import Fault
-from standoff.wording import printable
+from standoff.wording import counted, printable
 
 HAPLY = "haply"
 LOOKED = 0.05
@@ -174,8 +174,11 @@ def _lines(scene: SimulationScene, report: ServoReport, written: Path | None) ->
     lines = [
         line("scene", scene.title),
         line("ended", report.message),
-        line("ticks", f"{found.ticks} at {report.rate:g} Hz, {found.missed} deadlines missed"),
-        line("engaged", f"{found.engaged} ticks, fault {report.fault.name}"),
+        line(
+            "ticks",
+            f"{found.ticks} at {report.rate:g} Hz, {counted(found.missed, 'deadline')} missed",
+        ),
+        line("engaged", f"in {counted(found.engaged, 'tick')}"),
         line("times, µs", "median, p99, p99.9, p99.99, worst"),
     ]
     for name in ("period", "lateness", "work"):

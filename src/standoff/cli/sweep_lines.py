@@ -77,7 +77,7 @@ def report_lines(report: Report, folder: Path) -> list[str]:
 
 def _certified(report: Report) -> str:
     found = report.found
-    told = f"{grouped(found.certified)} of {grouped(found.rows)} rows, "
+    told = f"{grouped(found.certified)} of {counted(found.rows, 'row', write=grouped)}, "
     told += share_text(found.certified, found.rows)
     missed = found.uncertified
     if missed.count:
@@ -212,8 +212,10 @@ def estimate_lines(job: Job, found: Estimate) -> list[str]:
     processes = counted(found.processes, "process", "processes")
     lines = [
         *_head(job),
-        line("shards", f"{grouped(found.shards)} of {grouped(job.shard_rows)} rows"),
-        line("tried", f"{found.tried} rows, {found.row_seconds * 1e6:.3g} µs each"),
+        line(
+            "shards", f"{grouped(found.shards)} of {counted(job.shard_rows, 'row', write=grouped)}"
+        ),
+        line("tried", f"{counted(found.tried, 'row')}, {found.row_seconds * 1e6:.3g} µs each"),
         line("time", f"{scaled(found.seconds, TIMES, 's')} with {processes}"),
         line("disk", f"{scaled(found.size, SIZES, 'B')} in shards"),
     ]

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.real_numbers import shown
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.summary import line
@@ -41,13 +42,13 @@ def clearance_of(text: str) -> float:
     """
     told = f"--prove: give the length that is to be kept, such as: --prove {ASKED}0.005"
     if not text.startswith(ASKED):
-        raise CommandError(f"{told}; got {text!r}")
+        raise CommandError(f"{told}; got {shown(text)}")
     try:
         clearance = float(text.removeprefix(ASKED))
     except ValueError:
-        raise CommandError(f"{told}; got {text!r}") from None
+        raise CommandError(f"{told}; got {shown(text)}") from None
     if not math.isfinite(clearance) or clearance < 0.0:
-        raise CommandError(f"{told}; a length is zero or above, got {text!r}")
+        raise CommandError(f"{told}; a length is zero or above, got {shown(text)}")
     return clearance
 
 
@@ -157,11 +158,12 @@ def _places(proof: Proof, name: str, places: Places) -> list[str]:
 
 def _estimate_lines(proof: Proof, found: ProofEstimate) -> list[str]:
     processes = counted(found.processes, "process", "processes")
+    tried = counted(found.tried, "query", "queries", grouped)
     shown = f"{100.0 * found.proven:.3g} % proven, {100.0 * found.violated:.3g} % violated"
     return [
         *_head(proof),
         line("shards", f"{found.shards}"),
-        line("tried", f"{grouped(found.tried)} queries, {found.query_seconds * 1e6:.3g} µs each"),
+        line("tried", f"{tried}, {found.query_seconds * 1e6:.3g} µs each"),
         line("after these", f"{shown} of the box"),
         line("time", f"at most {scaled(found.seconds, TIMES, 's')} with {processes}"),
     ]

@@ -13,6 +13,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.servo.statistics import NANO, ServoStatistics
 from standoff.simulation.device import Fault
 from standoff.simulation.system_state import SystemState
+from standoff.wording import counted
 
 Array = NDArray[np.float64]
 
@@ -79,7 +80,7 @@ class ServoReport(KeepsReadOnly):
     log: Array
 
     def __repr__(self) -> str:
-        return f"<ServoReport {self.ended.name}, {self.statistics.ticks} ticks>"
+        return f"<ServoReport {self.ended.name}, {counted(self.statistics.ticks, 'tick')}>"
 
 
 def told(ended: Ended, away: int) -> str:

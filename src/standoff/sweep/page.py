@@ -84,7 +84,8 @@ def _summary(report: Report) -> str:
     seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
     ways = ", ".join(f"{_plain(p.name)} ({_plain(p.told)})" for p in job.parameters)
     lines = [
-        f"{_plain(job.subject.name)}: {_grouped(found.rows)} rows ({job.kind}{seed}).",
+        f"{_plain(job.subject.name)}: {counted(found.rows, 'row', write=_grouped)} "
+        f"({job.kind}{seed}).",
         f"From row to row change: {ways}.",
     ]
     if found.uncertified.count:
