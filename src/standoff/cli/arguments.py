@@ -111,12 +111,12 @@ class ClearanceFiles:
 
 @dataclass(frozen=True)
 class ClearanceCommand:
-    """Report the clearance of all pairs of a scene's bodies, proven.
+    """Report the clearance of all pairs of a scene's bodies, or of an assembly's parts, proven.
 
     Example: standoff clearance examples/fits.toml --min 0.3 --allow examples/fits-allowed.toml
 
-    Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 a pair is not proven to keep
-    what it must, or an answer is not certified.
+    Exit codes: 0 done, and all that --min, --allow and margins ask is proven, 1 results could not
+    be written, 2 bad input, 3 a pair is not proven to keep what it must.
     """
 
     scene: SceneFile
