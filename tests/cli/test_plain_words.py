@@ -83,9 +83,7 @@ def test_one_is_no_plural() -> None:
 # A number written before a noun by itself would be "1 parts".
 SOURCE = Path(standoff_package.__file__).parent
 REPORTS = ("automaton", "cad", "clearance", "cli", "servo", "sweep")
-UNCOUNTED = re.compile(
-    r"\{(?:len\([^{}]*\)|_?grouped\([^{}]*\)|[\w.]+)\} (?:more )?([a-z]+)\b"
-)
+UNCOUNTED = re.compile(r"\{(?:len\([^{}]*\)|_?grouped\([^{}]*\)|[\w.]+)\} (?:more )?([a-z]+)\b")
 COUNTED = re.compile(r"""counted\([^"']*["']([a-z ]+)["']""")
 NEVER_ONE = {
     ("automaton/branch_text.py", "switch"): "more than can be listed",
