@@ -91,6 +91,15 @@ def build_library(
     return library, public
 
 
+def link_command(folder: str | Path, program: str = "program") -> str:
+    """Return what a shell compiles ``program.c`` with, so that it finds the library in a folder."""
+    at = Path(folder).resolve()
+    words = [*shlex.split(os.environ.get(COMPILER) or "cc"), f"{program}.c"]
+    words += [f"-I{at}", f"-L{at}", "-lstandoff", "-lm", "-o", program]
+    # -Wl,-rpath would split a path at its commas
+    return shlex.join([*words, "-Xlinker", "-rpath", "-Xlinker", str(at)])
+
+
 def _compiler(given: str | None) -> list[str]:
     """The compiler's command as words."""
     words = shlex.split(given or os.environ.get(COMPILER) or "cc")

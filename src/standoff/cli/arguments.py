@@ -292,7 +292,7 @@ class WarmupCommand:
 class LibraryCommand:
     """Build the shared library and the header for programs in C and C++.
 
-    It takes about a minute and needs a C compiler: `cc`, or the one that CC names in the
+    It takes some minutes and needs a C compiler: `cc`, or the one that CC names in the
     environment. standoff.c_interface.save_pair writes the files of pairs that it loads;
     docs/c-interface.md has a complete program.
 
