@@ -133,7 +133,7 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
     else:
         when = (
             f"in {counted(looked.frames, 'frame')} from {looked.start:g} s to {looked.end:g} s "
-            "(nothing is said between them)"
+            "(of the time between them nothing is said)"
         )
     verdicts = ", ".join(
         f'{n} <span class="mark {verdict.name}">{verdict.name}</span>'
@@ -144,7 +144,7 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         f"{counted(len(report.world.bodies), 'body', 'bodies')}, {when}: {verdicts}.",
         f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}."
         if report.clearance > -math.inf
-        else f"Of the clearance of all pairs {escape(printable(no_clearance(report)))}.",
+        else f"No clearance is proven for all pairs: {escape(printable(no_clearance(report)))}.",
     ]
     if report.clearance > -math.inf and undecided(report):
         lines.append(f"But {escape(printable(undecided(report)))}.")

@@ -293,11 +293,11 @@ MOST_NAMED = 3
 
 
 def no_clearance(report: Report) -> str:
-    """Said in place of a clearance without a bound: why there is none."""
+    """Why there is no clearance of all pairs with a bound."""
     told = undecided(report)
     deep = (Verdict.OVERLAPPING, Verdict.CONTAINED)
     met = not told or any(row.verdict in deep for row in report.rows)
-    return "none is proven: " + "; ".join([MET] * met + [told] * bool(told))
+    return "; ".join([MET] * met + [told] * bool(told))
 
 
 def undecided(report: Report) -> str:
@@ -307,7 +307,7 @@ def undecided(report: Report) -> str:
         return ""
     named = ", ".join(" - ".join(row.names) for row in rows[:MOST_NAMED])
     more = f" and {len(rows) - MOST_NAMED} more" if len(rows) > MOST_NAMED else ""
-    return f"whether these meet is not decided: {named}{more}"
+    return f"it is not decided whether these meet: {named}{more}"
 
 
 def not_kept(required: float, lower: float) -> str:

@@ -275,7 +275,7 @@ class ServoCommand:
 
 @dataclass(frozen=True)
 class WarmupCommand:
-    """Compile all kernels ahead of time, so that no later use waits for it.
+    """Compile all kernels ahead of time, so that nobody waits for it later.
 
     Once per installation: what is already compiled is only loaded. Bodies made of formulas have
     their own code, which each process compiles when it creates them; that is not done here.

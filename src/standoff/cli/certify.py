@@ -134,7 +134,7 @@ def _lines(
         f"clearance {proof.clearance:g} asked for",
     ]
     if proof:
-        lines.append(f"proven    none comes nearer than {at_least(proof.proven)} at any instant")
+        lines.append(f"proven    no pair comes nearer than {at_least(proof.proven)} at any instant")
     else:
         lines.append(f"proven    until {proof.time:.9g} s")
     if proof.witness is not None:

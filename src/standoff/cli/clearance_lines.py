@@ -69,7 +69,10 @@ def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
     if looked.frames == 1:
         return [*lines, line("time", time_text(looked.start))]
     span = f"{time_text(looked.start)} to {time_text(looked.end)}"
-    return [*lines, line("frames", f"{looked.frames} from {span}; nothing is said between frames")]
+    return [
+        *lines,
+        line("frames", f"{looked.frames} from {span}; of the time between them nothing is said"),
+    ]
 
 
 def _table(rows: Sequence[Row], unit: str, *, timed: bool) -> Table:
@@ -131,7 +134,12 @@ def _tail(
     told = ", ".join(f"{n} {verdict.name}" for verdict, n in report.tally().items() if n)
     lines.append(line("verdicts", told or "no pair counts"))
     told = f"{at_least(report.clearance)} {unit}, proven for all pairs"
-    lines.append(line("clearance", told if report.clearance > -math.inf else no_clearance(report)))
+    lines.append(
+        line(
+            "clearance",
+            told if report.clearance > -math.inf else f"none is proven: {no_clearance(report)}",
+        )
+    )
     lines += _certified(report, looked)
     for k, (names, failure) in enumerate(report.failures):
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))

@@ -7,7 +7,7 @@ from inspect import getdoc
 
 USAGE = """usage: standoff COMMAND [OPTIONS]
 
-Exact, certified minimum distance of curved convex bodies in motion."""
+Exact, certified minimum distance of curved bodies, convex or not, at rest and in motion."""
 
 EXAMPLES = """Examples:
   standoff distance examples/helix.toml --time 2.5

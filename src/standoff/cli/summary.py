@@ -98,7 +98,9 @@ def _solid_lines(scene: Scene, answer: SolidProximity) -> list[str]:
         lines.append(line("ties", f"{counted(len(answer.minima), 'pair')} at this distance"))
     if answer.overlap is not None:
         unit = scene.length_unit
-        lines.append(line("overlap", f"a ball of radius {at_least(answer.overlap.radius)} {unit}"))
+        lines.append(
+            line("overlap", f"a ball of radius {at_least(answer.overlap.radius)} {unit} is in both")
+        )
         least = f"no translation shorter than {at_least(answer.overlap.depth)} {unit} parts them"
         lines.append(line("depth", least))
     return lines

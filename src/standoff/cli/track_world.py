@@ -157,7 +157,7 @@ def _lines(
             f"{at_least(float(walked.clearance[k]))} {unit} at "
             f"{time_text(walked.times[k])}, proven for all pairs in all frames"
             if walked.clearance[k] > -np.inf
-            else f"{no_clearance(report)}, at {time_text(walked.times[k])}",
+            else f"none is proven: {no_clearance(report)}, at {time_text(walked.times[k])}",
         ),
         *(line("closest" if i == 0 else "", text) for i, text in enumerate(shown)),
         *([line("", f"and {counted(more, 'more pair')}")] if more else []),
