@@ -128,7 +128,7 @@ def _spread(spread: Spread, unit: str) -> list[str]:
     return [
         *(_length(spread.least, unit), str(spread.least_row)),
         *(_length(spread.most, unit), str(spread.most_row)),
-        *(_length(spread.sum / spread.count, unit), _grouped(spread.count)),
+        *(f"{spread.sum / spread.count:.6g} {escape(unit)}".rstrip(), _grouped(spread.count)),
     ]
 
 
