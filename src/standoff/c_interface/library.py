@@ -16,7 +16,7 @@ from typing import BinaryIO
 from standoff.c_interface.layout import layout_header
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
-from standoff.kernels.compiler.notices import say
+from standoff.kernels.compiler.notices import say, takes
 from standoff.whole_files import MissingFolder, file_name, write_whole
 
 SOURCE = Path(__file__).parent / "source"
@@ -27,7 +27,7 @@ COMPILER = "CC"
 """The compiler's name in the environment; `cc` if not set."""
 
 SECONDS = 130
-"""About how long one core takes, s."""
+"""About how much processor time it takes, s."""
 
 
 def build_library(
@@ -37,7 +37,7 @@ def build_library(
     compiler: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Path, Path]:
-    """Build the shared library of the C interface; takes two to three minutes.
+    """Build the shared library of the C interface; takes two to three minutes of a processor.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def build_library(
     command = _compiler(compiler)
     from standoff.c_interface import objects  # reads all kernels
 
-    say(f"building {NAMES[sys.platform]}, about {SECONDS} s on one core ...")
+    say(f"building {NAMES[sys.platform]}, {takes(SECONDS)} ...")
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
         objects.build(work, processor, progress)

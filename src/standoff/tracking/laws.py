@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.tracking.law_options import (
     Choice,
@@ -256,7 +255,7 @@ def law_of_facts(facts: Mapping[str, Any]) -> Law:
     options = dict(facts)
     name = options.pop("law", None)
     if not isinstance(name, str) or name not in LAWS:
-        raise StandoffError(f"law = {shown(name)} is not one of {list(LAWS)}.", "law", name)
+        raise StandoffError(f"law = {name!r} is not one of {list(LAWS)}.", "law", name)
     known = options_of(LAWS[name])
     for unknown in options.keys() - known.keys():
         raise StandoffError(
