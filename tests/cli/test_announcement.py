@@ -37,7 +37,10 @@ SAID = {
         "measuring the errors of pairs of box, lens, 10 cases at each gap and depth ..."
     ),
     "accuracy": "measuring the errors of all pairs, 10 cases at each gap and depth ...",
-    "warmup": f"loading all kernels; compiling all of them takes about {ALL_SECONDS} s of processor time ...",
+    "warmup": (
+        "loading all kernels; compiling all of them takes about "
+        f"{ALL_SECONDS} s of processor time ..."
+    ),
 }
 
 

@@ -54,7 +54,7 @@ ALL_SECONDS = 245
 BUSY = 1.3
 """Seconds by the clock for a second of a processor, from which on a machine is called busy."""
 
-SLOWEST = 0.01
+PACE_SHARE = 0.01
 """Share of a processor below which a pace is not told."""
 
 SEEN = 1.0
@@ -173,7 +173,7 @@ class _Part:
     def still(self) -> str:
         clock, spent = self.taken()
         told = f"still compiling {self.name}{self.place}: {clock:.0f} s so far"
-        slower = clock / max(spent, clock * SLOWEST)
+        slower = clock / max(spent, clock * PACE_SHARE)
         if slower < BUSY:
             return f"{told} ..."
         seconds = WORK[self.work].seconds
