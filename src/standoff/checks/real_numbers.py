@@ -52,8 +52,8 @@ def _items(value: Any) -> str:
         return ""
     if not any(isinstance(item, np.ndarray) for item in value):
         return ""
-    before, after = repr(type(value)())
-    return before + ", ".join(map(shown, value)) + after
+    brackets = repr(type(value)())
+    return brackets[0] + ", ".join(map(shown, value)) + brackets[1]
 
 
 _LINE_ENDS = re.compile(r"\s*\n\s*")
