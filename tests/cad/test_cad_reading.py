@@ -164,6 +164,7 @@ def test_the_check_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     capsys.readouterr()
     assert main(["check", str(path)]) == 0
     told = capsys.readouterr().out
+    assert "plate.step: 1 part, lengths in mm" in told
     assert "15 faces (4 cylinder, 11 plane)" in told
     assert "not convex: a Boundary" in told
     assert main(["check", str(path), "--json"]) == 0

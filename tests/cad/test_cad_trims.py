@@ -16,6 +16,7 @@ from shares import only
 from standoff.cad.trims import of_file
 from standoff.cli import main
 from standoff.errors import CadError
+from standoff.solids.spatial.self_intersections import NONE_PROVEN
 
 RADIUS = 12.4
 BLIND = (0.0, 3.0, 1.0, 1.0, 0.0, 0.0, 4.0)
@@ -51,9 +52,9 @@ def test_what_is_found_of_a_part_is_in_its_report(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = made.write_step(made.plate(), tmp_path / "plate.step")
-    assert so.read_step(file)[0].report.self_intersections == ("proven not to meet itself",)
+    assert so.read_step(file)[0].report.self_intersections == (NONE_PROVEN,)
     assert main(["check", str(file)]) == 0
-    assert "proven not to meet itself" in capsys.readouterr().out
+    assert NONE_PROVEN in capsys.readouterr().out
 
 
 def test_a_trimming_curve_that_is_given_a_turn_away_is_turned_back() -> None:

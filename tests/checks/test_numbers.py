@@ -24,11 +24,34 @@ from standoff.checks.numbers import (
     whole_number,
     yes_or_no,
 )
+from standoff.checks.real_numbers import SHOWN_CHARACTERS, shown
 from standoff.errors import StandoffError
 from standoff.kernels.tolerances import FARTHEST
 
 READERS = (number, positive, not_negative, magnitude, magnitude_or_zero)
 """Of one number."""
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (np.eye(2), "array([[1., 0.], [0., 1.]])"),
+        (np.zeros((100, 3)), "an array of 100 by 3 numbers"),
+        ((np.eye(2), "x"), "(array([[1., 0.], [0., 1.]]), 'x')"),
+        ([3, np.zeros((100, 3))], "[3, an array of 100 by 3 numbers]"),
+        ("two\n lines", r"'two\n lines'"),
+    ],
+)
+def test_a_value_is_repeated_on_one_line(value: Any, text: str) -> None:
+    assert shown(value) == text
+
+
+@pytest.mark.parametrize(
+    "value", [{"a": np.zeros((100, 3))}, [np.zeros(20)] * 50, np.ma.masked_all((9, 9)), "x" * 999]
+)
+def test_a_value_is_cut_where_it_is_long(value: Any) -> None:
+    assert len(shown(value)) <= SHOWN_CHARACTERS
+    assert "\n" not in shown(value)
 
 
 def refusal(read: Callable[..., Any], value: Any, *more: Any) -> str:

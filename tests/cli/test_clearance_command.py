@@ -6,6 +6,7 @@ import json
 import math
 import re
 from collections.abc import Callable
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +17,7 @@ import pytest
 
 import standoff as so
 from standoff.clearance.fits import load_fits
-from standoff.clearance.report import Nearest, Wanted, at_least, report_on
+from standoff.clearance.report import Nearest, Wanted, report_on
 from standoff.clearance.tolerances import TOUCHING_PART
 from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
 from standoff.scene import SceneError
@@ -212,15 +213,61 @@ def test_a_margin_of_the_scene_must_hold(standoff: Standoff, scene: Path) -> Non
         scene.write_text(SCENE.replace("within = 5.0", f"within = 0.1\n{rule}"))
         ended = standoff("clearance", scene)
         assert ended.code == code, ended.out
-    assert "table - pair_of_balls: not proven to keep 0.6: at least 0.5" in ended.out
+    assert (
+        "table - pair_of_balls: not proven to keep 0.6: at least 0.499999999999 apart" in ended.out
+    )
 
 
-def test_a_pair_that_keeps_all_but_a_rounding_is_told_with_all_digits() -> None:
-    assert at_least(0.04 - 1e-15) == "0.04"
-    assert at_least(29.3767, 3) == "29.3"
-    assert at_least(-0.25) == "-0.25"
-    assert at_least(-0.123456789, 3) == "-0.124"
-    assert at_least(math.inf) == "inf"
+@pytest.mark.parametrize("short", [1e-12, 1e-10])
+def test_a_nominal_gap_fails_by_little_and_says_so(
+    standoff: Standoff, scene: Path, tmp_path: Path, short: float
+) -> None:
+    # The pair of balls is 0.5 above the table, less a little: what is asked is not quite there.
+    lower = SCENE.replace("position = [3.25, 0.0, 1.0]", f"position = [3.25, 0.0, {1.0 - short!r}]")
+    scene.write_text(lower.replace("within = 5.0", 'within = 5.0\nignore = [["ball", "moon"]]'))
+    page = tmp_path / "page.html"
+    ended = standoff("clearance", scene, "--min", 0.5, "--page", page)
+    assert ended.code == 3
+    pair = by_name(facts_of(standoff, scene, "--min", 0.5))["table", "pair_of_balls"]
+    assert 0.5 - pair["least_lower_bound"] == pytest.approx(short, rel=0.1)
+    told = re.search(
+        r"table - pair_of_balls: not proven to keep 0\.5: at least (\S+) apart, (\S+) too little, "
+        r"within the touching tolerance of these parts, (\S+) \(their slack (\S+)\): "
+        r"ask for (\S+), and the nominal gap passes",
+        ended.out,
+    )
+    assert told is not None, ended.out
+    apart, missing, tolerance, slack, ask = map(float, told.groups())
+    assert apart <= pair["least_lower_bound"] < 0.5
+    assert 0.5 - pair["least_lower_bound"] <= missing <= 2.0 * short
+    assert slack <= pair["touching_within"] <= tolerance
+    assert "too little, within the touching tolerance" in page.read_text("utf-8")
+    report = standoff("clearance", scene, "--min", ask, "--json").out
+    assert by_name(json.loads(report))["table", "pair_of_balls"]["failure"] is None
+    # one that is short by more has no such excuse
+    ended = standoff("clearance", scene, "--min", 0.5001)
+    assert "too little" in ended.out
+    assert "touching tolerance" not in ended.out[ended.out.index("table - pair_of_balls") :]
+
+
+def test_no_report_says_more_than_is_proven(standoff: Standoff, tmp_path: Path) -> None:
+    """A plate of which the gap to a ball is a rounder number less some 1e-12 of it."""
+    file, page, out = tmp_path / "near.toml", tmp_path / "near.html", ""
+    body = '[bodies.{}]\nshape = "sphere"\nradius = 0.5\n'
+    file.write_text(
+        "version = 1\n" + body.format("a") + body.format("b") + "[placements.b]\n"
+        "position = [1.2999999999974, 0.0, 0.0]\n[world]\n"
+    )
+    ended = standoff("clearance", file, "--page", page)
+    (pair,) = facts_of(standoff, file)["pairs"]
+    assert ended.code == 0
+    assert "≥ 0.29999999999" in ended.out
+    texts = page.read_text("utf-8")
+    for out in (ended.out, texts):
+        shown = [float(x) for x in re.findall(r"\b0\.(?:29|30*)\d*\b", out)]
+        upper = [x for x in shown if x > pair["distance"]]
+        assert len(upper) == 1, out  # the upper bound's
+        assert all(x <= pair["least_lower_bound"] for x in shown[1:] if x not in upper)
 
 
 def test_allowed_fits_do_not_fail(standoff: Standoff, scene: Path, fits: Path) -> None:
@@ -241,7 +288,7 @@ def test_an_allowed_fit_that_is_too_deep_fails(standoff: Standoff, scene: Path, 
     fits.write_text(FITS + more)
     ended = standoff("clearance", scene, "--allow", fits)
     assert ended.code == 3
-    assert "ball - pair_of_balls: up to 0.25 deep, and 0.24 is allowed" in ended.out
+    assert "ball - pair_of_balls: up to 0.250000000001 deep, and 0.24 is allowed" in ended.out
 
 
 def test_fits_that_are_no_contacts_are_told(standoff: Standoff, scene: Path, fits: Path) -> None:
@@ -491,7 +538,9 @@ def test_nothing_is_said_that_is_not_proven(
     assert verdict_of(answer) is verdict
 
 
-def test_frames_that_are_not_certified_are_told(standoff: Standoff, passing: Path) -> None:
+def test_frames_that_are_not_certified_are_told(
+    standoff: Standoff, passing: Path, tmp_path: Path
+) -> None:
     # The paper's law with a low gain lags behind: its bounds hold, its answers are not proven.
     law = 'law = "paper"\nrestarts = false\ngain = 2.0\n'
     passing.write_text(passing.read_text().replace("[track]\n", f"[track]\n{law}"))
@@ -500,8 +549,22 @@ def test_frames_that_are_not_certified_are_told(standoff: Standoff, passing: Pat
     assert pair["uncertified_frames"] > 0
     assert (pair["certified"], facts["certified"]) == (False, False)
     ended = standoff("clearance", passing, "--motion")
-    assert ended.code == 3
-    assert re.search(r"^not certified tool - part in \d+ frames", ended.out, re.MULTILINE)
+    told = re.search(r"^not certified tool - part: (.+) in \d+ frames", ended.out, re.MULTILINE)
+    assert told is not None, ended.out
+    assert told[1].split(", ") == pair["uncertified_as"] == list(facts["advice"])
+    page = tmp_path / "page.html"
+    assert standoff("clearance", passing, "--motion", "--page", page).code == 0
+    for name in pair["uncertified_as"]:
+        advice = so.Status[name].advice
+        assert facts["advice"][name] == advice
+        assert f"{name}: {advice}" in ended.out
+        assert f"{name}: {escape(advice)}" in page.read_text("utf-8")
+    # nothing was asked; what is asked and holds by the bounds is proven
+    assert ended.code == 0
+    least = pair["least_lower_bound"]
+    assert least > 0.0
+    for asked, code in ((0.9 * least, 0), (1.1 * least, 3)):
+        assert standoff("clearance", passing, "--motion", "--min", asked).code == code
 
 
 def test_the_tolerance_is_of_the_larger_body() -> None:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+import standoff as standoff_package
+from draws import draws
 from standoff.cli.arguments import OWN
-from standoff.wording import counted
+from standoff.wording import at_least, at_most, counted
 
 Standoff = Callable[..., Any]
 WIDTH = 100
@@ -73,6 +78,74 @@ def test_one_is_no_plural() -> None:
     told = [counted(n, "query", "queries") for n in (0, 1, 2)]
     assert told == ["0 queries", "1 query", "2 queries"]
     assert counted(1, "frame") == "1 frame"
+
+
+# A number written before a noun by itself would be "1 parts".
+SOURCE = Path(standoff_package.__file__).parent
+REPORTS = ("automaton", "cad", "clearance", "cli", "servo", "sweep")
+UNCOUNTED = re.compile(r"\{(?:len\([^{}]*\)|_?grouped\([^{}]*\)|[\w.]+)\} (?:more )?([a-z]+)\b")
+COUNTED = re.compile(r"""counted\([^"']*["']([a-z ]+)["']""")
+NEVER_ONE = {
+    ("automaton/branch_text.py", "switch"): "more than can be listed",
+    ("automaton/picture.py", "feature"): "shown where not all of several are",
+    ("automaton/picture.py", "mode"): "as many as fill a picture",
+    ("cad/making.py", "face"): "more than can be read",
+    ("cli/summary.py", "event"): "the first eight",
+    ("cli/summary.py", "part"): "what a translation does",
+    ("sweep/reading.py", "row"): "more than can be swept",
+    ("sweep/subject_tables.py", "pair"): "of which one must be named",
+}
+"""Where such a number is more than one, or the word no noun."""
+
+
+def test_what_is_counted_in_reports_is_no_plural_of_one() -> None:
+    files = [file for part in REPORTS for file in sorted((SOURCE / part).rglob("*.py"))]
+    texts = {file.relative_to(SOURCE).as_posix(): file.read_text("utf-8") for file in files}
+    nouns = {noun.split()[-1] for text in texts.values() for noun in COUNTED.findall(text)}
+    assert {"row", "pair", "part"} <= nouns
+    many = {noun + end: noun for noun in nouns for end in ("s", "es")}
+    found = {
+        (name, many[word])
+        for name, text in texts.items()
+        for word in UNCOUNTED.findall(text)
+        if word in many
+    }
+    assert found == set(NEVER_ONE)
+
+
+@pytest.mark.parametrize(
+    ("bound", "digits", "least", "most"),
+    [
+        (0.29999999999738564, 6, "0.299999999997", "0.3"),
+        (0.04 - 1e-15, 6, "0.0399999999999", "0.04"),
+        (0.3, 6, "0.3", "0.3"),
+        (0.5 + 1e-13, 6, "0.5", "0.500000000001"),
+        (29.3767, 3, "29.3", "29.4"),
+        (-0.25, 6, "-0.25", "-0.25"),
+        (-0.123456789, 3, "-0.124", "-0.123"),
+        (0.1234567, 15, "0.1234567", "0.1234567"),
+        (999999.5, 6, "999999", "1e+06"),
+        (-0.0, 6, "0", "0"),
+        (math.inf, 6, "inf", "inf"),
+        (-math.inf, 6, "-inf", "-inf"),
+    ],
+)
+def test_a_bound_is_rounded_to_its_safe_side(
+    bound: float, digits: int, least: str, most: str
+) -> None:
+    assert (at_least(bound, digits), at_most(bound, digits)) == (least, most)
+
+
+def test_no_bound_is_shown_beyond_what_it_is(rng: np.random.Generator) -> None:
+    for _ in range(draws(3000)):
+        round_number = round(rng.uniform(-10.0, 10.0), int(rng.integers(0, 6)))
+        near = round_number * (1.0 + rng.choice([0.0, 1e-16, -1e-13, 1e-9, -1e-12]))
+        bound = rng.choice([near, rng.uniform(-1.0, 1.0) * 10.0 ** rng.integers(-20, 20)])
+        digits = int(rng.choice([2, 3, 6, 9, 15]))
+        low, high = Decimal(at_least(bound, digits)), Decimal(at_most(bound, digits))
+        exact = Decimal(repr(float(bound)))
+        assert low <= exact <= high
+        assert high - low <= abs(exact) * Decimal(10) ** (1 - digits)
 
 
 def test_no_tolerance_is_told_as_none(standoff: Standoff, passing: Path) -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from functools import partialmethod
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ import pytest
 
 import standoff as so
 from standoff.devices import Trace
+from standoff.servo import Servo
 
 SCENE = Path(__file__).parents[2] / "examples" / "simulation" / "hand-on-lens.toml"
 Standoff = Callable[..., Any]
@@ -56,6 +59,27 @@ def test_a_log_is_a_trace(standoff: Standoff, tmp_path: Path) -> None:
     trace = Trace.read(log)
     first = [known.column(axis)[0].as_py() for axis in "xyz"]
     np.testing.assert_allclose(trace.path.pose(trace.start).translation, first, atol=1e-12)
+
+
+def test_the_fault_is_named(
+    standoff: Standoff, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    # An age that no reading keeps: the coupler lets go of the first.
+    made = Servo.__init__
+    monkeypatch.setattr(Servo, "__init__", partialmethod(made, max_age=1e-12))
+    log = tmp_path / "log.parquet"
+    ended = standoff("servo", SCENE, "--seconds", "2", "--device", "simulated", "-o", str(log))
+    assert ended.code == 3
+    (line,) = re.findall(r"^fault +(.*)$", ended.out, re.MULTILINE)
+    assert line.startswith(f"LATE: {so.simulation.Fault.LATE.advice}")
+    assert "Before, the coupler let go: LATE: " in ended.out
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(log)
+    names = {"time", *"xyz", "qx", "qy", "qz", "qw", "distance", "tick", "lateness", "work"}
+    names |= {f"{what}.{axis}" for what in ("tool", "force", "torque") for axis in "xyz"}
+    assert set(table.column_names) == names | {"engaged", "fault"}
+    assert so.simulation.Fault.LATE in table.column("fault").to_pylist()
 
 
 @pytest.mark.parametrize("kind", [signal.SIGINT, signal.SIGTERM])

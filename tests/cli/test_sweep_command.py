@@ -13,6 +13,7 @@ from cli.test_hostile_names import OBEYED, hostile, obeyed, toml
 from standoff.sweep import run as runs
 from standoff.sweep.folder import locked
 from standoff.sweep.reading import load_job
+from standoff.wording import at_least
 from sweep.conftest import JOB, SCENE, TOP
 from sweep.shape_jobs import SHAPE_JOB, TOOL_AND_BALL
 from sweep.test_subjects import OF_ROBOT
@@ -330,7 +331,7 @@ def test_the_page(standoff: Standoff, job: Path, tmp_path: Path) -> None:
     assert "Rows that are not certified: 0." in told
     assert f"{facts['below']['count']} rows are not proven to be 0.5 cm apart." in told
     for key in ("distance", "lower_bound"):
-        assert f">{facts[key]['min']:.6g} cm<" in told
+        assert f">{at_least(facts[key]['min'])} cm<" in told
         assert f">{facts[key]['sum'] / 60:.6g} cm<" in told
     for k, row in enumerate(facts["worst"]["row"]):
         distance = facts["worst"]["distance"][k]

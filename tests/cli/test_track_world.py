@@ -71,7 +71,7 @@ def test_the_summary(standoff: Standoff, scene: Path) -> None:
     lines = {line[:14].strip(): line[14:] for line in reversed(ended.out.splitlines())}
     assert lines["scene"] == "Three balls: 3 bodies, 2 pairs"
     assert lines["frames"] == "241 from 0 s to 12 s, 50 ms apart"
-    assert lines["clearance"] == "0.5 cm at 4 s, proven for all pairs in all frames"
+    assert lines["clearance"] == "0.499999999999 cm at 4 s, proven for all pairs in all frames"
     assert lines["closest"] == "0.5 cm at 4 s, sun - comet"
     assert "1.25 cm at 10 s, comet - pole rod" in ended.out
     assert lines["certified"] == "241 of 241 frames, 100 %"

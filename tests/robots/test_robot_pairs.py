@@ -219,6 +219,17 @@ def test_two_still_geometries_of_a_mujoco_pair_are_told() -> None:
     so.robots.MujocoContacts(so.Robot.from_mujoco(mujoco.MjModel.from_xml_string(model)))
 
 
+@pytest.mark.parametrize(
+    "given",
+    [np.zeros((100, 3)), {"post": np.zeros((100, 3))}, {"post": (np.zeros((100, 3)), np.eye(4))}],
+)
+def test_an_array_is_no_obstacle_and_is_not_printed(given: object) -> None:
+    with pytest.raises(so.StandoffError, match="an array of 100 by 3 numbers") as caught:
+        exact_robot(next(iter(EXACT))).with_obstacles(given)
+    assert "0., 0., 0.], [0., 0., 0.]" not in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_obstacles_are_pairs_with_all_that_moves(tmp_path: Path) -> None:
     path = tmp_path / "arms.urdf"
     path.write_text(URDF.format(grip="revolute"))

@@ -102,11 +102,17 @@ def check_ticks(operator: sim.Operator) -> sim.SystemRun:
         pose = report.state.pose(body)
         np.testing.assert_allclose(pose.translation, expected.positions(body)[-1], atol=1e-12)
     log = report.log
-    np.testing.assert_allclose(
-        log[:, V.J_FORCE : V.J_FORCE + 3], expected.coupler.on_device[1:, :3], atol=1e-7
-    )
-    np.testing.assert_allclose(log[:, V.J_DISTANCE], expected.distances[1:, 0], atol=1e-12)
-    assert (log[:, V.J_DISTANCE] < 0.0).any()
+    np.testing.assert_allclose(log["force"], expected.coupler.on_device[1:, :3], atol=1e-7)
+    np.testing.assert_allclose(log["torque"], expected.coupler.on_device[1:, 3:], atol=1e-7)
+    np.testing.assert_allclose(log["distance"], expected.distances[1:, 0], atol=1e-12)
+    assert (log["distance"] < 0.0).any()
+    handle = rows[:, K.G_MOTION : K.G_MOTION + 12]
+    np.testing.assert_array_equal(log["rotation"].reshape(-1, 9), handle[:, :9])
+    np.testing.assert_array_equal(log["position"], handle[:, 9:])
+    np.testing.assert_allclose(log["tool"], expected.positions(1)[1:], atol=1e-12)
+    assert (np.diff(log["time"]) > 0.0).all()
+    assert not log["fault"].any()
+    assert set(log["engaged"].tolist()) <= {0.0, 1.0}
     assert report.statistics.engaged == report.statistics.ticks == ticks
     assert report.state.coupler is not None
     assert not report.state.coupler.wrench_on_device.force.any()
@@ -165,7 +171,7 @@ def test_it_is_at_rest_until_engaged_and_after_disengaging(
     fresh = Servo(operator, device=TRACE, seconds=20 * PERIOD)
     fresh.start()
     fresh.wait()
-    assert not fresh.stop().log[:, V.J_FORCE :].any()
+    assert not any(fresh.stop().log[name].any() for name in ("force", "torque"))
 
 
 def test_limits_are_lowered_never_raised(pointed: tuple[Servo, PointerDevice]) -> None:
@@ -200,6 +206,11 @@ def test_a_pointer_that_rests_too_long_or_is_lost_ends_the_force(
     assert until(lambda: not servo.latest().engaged)  # nothing was put for a second
     assert servo.latest().fault is Fault.LATE
     assert not forced(servo)
+    report = servo.stop()
+    assert report.message.endswith(f"Before, the coupler let go: LATE: {Fault.LATE.advice}")
+    assert repr(report).endswith(", fault LATE>")
+    assert report.log["fault"][-1] == Fault.LATE
+    assert Fault.MISSING in report.log["fault"]
 
 
 @pytest.mark.parametrize(
@@ -369,7 +380,7 @@ def test_the_loop_s_bins_are_those_of_the_statistics(operator: sim.Operator) -> 
     servo.start()
     servo.wait()
     report = servo.stop()
-    work = np.round(1e9 * report.log[:, V.J_WORK]).astype(int).tolist()
+    work = np.round(1e9 * report.log["work"]).astype(int).tolist()
     bins = np.zeros(V.BINS, dtype=np.int64)
     for value in work:
         bins[next_bin(value)] += 1
@@ -387,7 +398,7 @@ def test_memory_is_flat(operator: sim.Operator) -> None:
         assert until(lambda: servo._tallies[V.Y_TICKS] > tick + 100)
         assert rtsys.get_allocation_stats().alloc == before
     assert len(servo.stop().log) == 50  # the last ones, oldest first
-    assert (np.diff(servo.stop().log[:, V.J_TICK]) == 1).all()
+    assert (np.diff(servo.stop().log["tick"]) == 1).all()
 
 
 @pytest.mark.parametrize(

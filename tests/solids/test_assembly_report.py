@@ -133,7 +133,7 @@ def test_an_undecided_pair_is_told_as_one(tmp_path: Path, monkeypatch: pytest.Mo
     (row,) = [row for row in report.rows if row.verdict is Verdict.UNDECIDED]
     assert row.names == ("plate", "bolt")
     assert report.clearance == -np.inf
-    assert no_clearance(report) == "none is proven: whether these meet is not decided: plate - bolt"
+    assert no_clearance(report) == "it is not decided whether these meet: plate - bolt"
     labels = [str(handle.get_label()) for handle in pairs_legend(report.rows, "mm")]
     assert labels[0].startswith("1  plate - bolt: undecided, gap at most ")
     assert labels[1].startswith("2  bolt - ring: gap 0.2 mm")
@@ -141,7 +141,7 @@ def test_an_undecided_pair_is_told_as_one(tmp_path: Path, monkeypatch: pytest.Mo
     text = page_of(file, report, Looked(0.0, 0.0, 1))
     (tmp_path / "page.html").write_text(text)
     assert (
-        "clearance of all pairs none is proven: whether these meet is not decided: plate - bolt"
+        "No clearance is proven for all pairs: it is not decided whether these meet: plate - bolt"
         in text
     )
     assert "overlap" not in text.split("</p>")[0].split('class="summary">')[1]
@@ -156,4 +156,6 @@ def test_an_undecided_pair_with_bounds_shows_them(
     assert undecided_gap(between, "mm") == "undecided, gap -0.25 to 0.1 mm"
     open_one = replace(between, verdict=Verdict.UNDECIDED)
     both = replace(report, rows=(open_one, *report.rows))
-    assert "one is inside another's material; whether these meet" in no_clearance(both)
+    assert "one is inside another's material; it is not decided whether these meet" in no_clearance(
+        both
+    )

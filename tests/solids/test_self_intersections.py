@@ -66,6 +66,25 @@ def test_a_pocket_as_deep_as_its_box_touches_it() -> None:
     assert "face 0 meets face 6" in "; ".join(found.lines())
 
 
+@pytest.mark.parametrize(
+    ("beside", "undecided", "lines"),
+    [
+        (0, 0, [si.NONE_PROVEN]),
+        (3, 0, [si.NONE_OUTSIDE]),
+        (0, 1, [si.NONE_FOUND, "undecided: 1 pair of pieces of faces, which may or may not meet"]),
+        (2, 5, [si.NONE_FOUND, "undecided: 5 pairs of pieces of faces, which may or may not meet"]),
+    ],
+)
+def test_what_is_proven_and_what_is_not_are_told_in_different_words(
+    beside: int, undecided: int, lines: list[str]
+) -> None:
+    found = si.SelfIntersections((), 1e-9, 10, beside, undecided)
+    assert found.lines() == lines
+    # no sentence is another one with its words in another order
+    words = [sorted(text.split()) for text in (si.NONE_PROVEN, si.NONE_OUTSIDE, si.NONE_FOUND)]
+    assert len({tuple(each) for each in words}) == 3
+
+
 @settings(max_examples=draws(4), deadline=None)
 @given(x=st.floats(0.0, 0.9), y=st.floats(0.0, 0.9), half=st.floats(0.05, 0.6))
 def test_a_cavity_is_refused_where_it_pokes_through(x: float, y: float, half: float) -> None:

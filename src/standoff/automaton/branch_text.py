@@ -38,7 +38,10 @@ def branches_text(automaton: ParallelBranches, names: Names = ("A", "B")) -> str
     ]
     if not branches:
         na, nb = len(automaton.features_a), len(automaton.features_b)
-        head = [f"modes of each local minimum: {na} features of A × {nb} of B = {automaton.modes}"]
+        head = [
+            f"modes of each local minimum: {counted(na, 'feature')} of A × {nb} of B = "
+            f"{automaton.modes}"
+        ]
     parts = [[*head, LEGEND], *_solids(automaton, names)]
     parts += [_branch_lines(automaton, branch) for branch in automaton.branches]
     if automaton.events:
@@ -59,7 +62,9 @@ def _solids(automaton: ParallelBranches, names: Names) -> list[list[str]]:
             found.append(body_lines(body, letter, name, features, transitions))
             continue
         told = counts_of(body, letter, name, features)
-        found.append([f"{told}, {len(transitions)} switches, too many to list"])
+        found.append(
+            [f"{told}, {counted(len(transitions), 'switch', 'switches')}, too many to list"]
+        )
     return found
 
 

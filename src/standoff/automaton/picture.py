@@ -21,6 +21,7 @@ from standoff.automaton.lanes import rows_of as lanes_of
 from standoff.automaton.text import MOST_DRAWN, Names, moves, product_switches
 from standoff.bodies.features import Feature
 from standoff.errors import not_installed
+from standoff.wording import counted
 
 try:
     from matplotlib.axes import Axes
@@ -174,10 +175,11 @@ def _draw_visits(axes: Axes, automaton: Automaton) -> None:
     axes.set_xlim(automaton.visits[0].start, automaton.visits[-1].end)
     axes.set_xlabel("time (s)")
     axes.grid(axis="x", alpha=0.3)
+    switches = counted(len(automaton.taken), "switch", "switches")
+    restarts = counted(len(automaton.restarts), "restart")
     axes.set_title(
-        f"visited: {len(row)} of {automaton.modes} modes (A – B), "
-        f"{len(automaton.taken)} switches"
-        + (f", {len(automaton.restarts)} restarts (dotted)" if automaton.restarts else ""),
+        f"visited: {len(row)} of {automaton.modes} modes (A – B), {switches}"
+        + (f", {restarts} (dotted)" if automaton.restarts else ""),
         fontsize="medium",
         loc="left",
     )

@@ -12,7 +12,7 @@ from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Course, Mode, mode_of
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
-from standoff.wording import printable
+from standoff.wording import counted, printable
 
 if TYPE_CHECKING:
     from standoff.automaton.visits import Visit
@@ -35,7 +35,7 @@ Names = tuple[str, str]
 def automaton_text(automaton: Automaton, names: Names = ("A", "B")) -> str:
     """Return modes, switching functions and resets, and the visited modes, line by line."""
     na, nb = len(automaton.features_a), len(automaton.features_b)
-    modes = [f"modes: {na} features of A × {nb} of B = {automaton.modes}", LEGEND]
+    modes = [f"modes: {counted(na, 'feature')} of A × {nb} of B = {automaton.modes}", LEGEND]
     bodies = [
         body_lines(automaton.a, "A", names[0], automaton.features_a, automaton.of("A")),
         body_lines(automaton.b, "B", names[1], automaton.features_b, automaton.of("B")),
@@ -56,7 +56,7 @@ def body_lines(
     if not transitions:
         return [f"{told}no switches"]
     rows = [(f"  {t.source} → {t.target}", t.switching, t.reset) for t in transitions]
-    return [f"{told}{len(transitions)} switches", *columns(rows)]
+    return [f"{told}{counted(len(transitions), 'switch', 'switches')}", *columns(rows)]
 
 
 def counts_of(body: Boundary, letter: str, name: str, features: Sequence[Feature]) -> str:
@@ -71,11 +71,12 @@ def counts_of(body: Boundary, letter: str, name: str, features: Sequence[Feature
 
 def _visited_lines(automaton: Automaton) -> list[str]:
     visits = automaton.visits
-    restarts = f", {len(automaton.restarts)} restarts" if automaton.restarts else ""
+    restarts = f", {counted(len(automaton.restarts), 'restart')}" if automaton.restarts else ""
     first, last = visits[0].start, visits[-1].end
     head = (
         f"visited from {first:.6g} s to {last:.6g} s: {len(automaton.visited)} of "
-        f"{automaton.modes} modes, {len(automaton.taken)} switches{restarts}"
+        f"{counted(automaton.modes, 'mode')}, {counted(len(automaton.taken), 'switch', 'switches')}"
+        f"{restarts}"
     )
     rows = [("  mode (A – B)", "visits", "time", "entered at")]
     for mode in automaton.visited:
@@ -188,7 +189,7 @@ def _product(automaton: Automaton) -> list[str]:
     if automaton.visits:
         return _visited_product(automaton)
     if automaton.modes > MOST_DRAWN:
-        return [f"  %% the product has {automaton.modes} modes: too many to draw"]
+        return [f"  %% the product has {counted(automaton.modes, 'mode')}: too many to draw"]
     lines = ['  subgraph pair["the pair: A – B"]']
     lines += [
         f'    {mode_node(a, b)}["{a} – {b}"]'

@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from standoff.c_interface.layout import layout_header
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
-from standoff.kernels.compiler.notices import say
+from standoff.kernels.compiler.notices import say, takes
 from standoff.whole_files import MissingFolder, file_name, write_whole
 
 SOURCE = Path(__file__).parent / "source"
@@ -26,7 +27,7 @@ COMPILER = "CC"
 """The compiler's name in the environment; `cc` if not set."""
 
 SECONDS = 130
-"""About how long one core takes, s."""
+"""About how much processor time it takes, s."""
 
 
 def build_library(
@@ -36,7 +37,7 @@ def build_library(
     compiler: str | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Path, Path]:
-    """Build the shared library of the C interface; takes two to three minutes.
+    """Build the shared library of the C interface; takes two to three minutes of a processor.
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ def build_library(
     command = _compiler(compiler)
     from standoff.c_interface import objects  # reads all kernels
 
-    say(f"building {NAMES[sys.platform]}, about {SECONDS} s on one core ...")
+    say(f"building {NAMES[sys.platform]}, {takes(SECONDS)} ...")
     with tempfile.TemporaryDirectory() as place:
         work = Path(place)
         objects.build(work, processor, progress)
@@ -90,12 +91,21 @@ def build_library(
     return library, public
 
 
+def link_command(folder: str | Path, program: str = "program") -> str:
+    """Return what a shell compiles ``program.c`` with, so that it finds the library in a folder."""
+    at = Path(folder).resolve()
+    words = [*shlex.split(os.environ.get(COMPILER) or "cc"), f"{program}.c"]
+    words += [f"-I{at}", f"-L{at}", "-lstandoff", "-lm", "-o", program]
+    # -Wl,-rpath would split a path at its commas
+    return shlex.join([*words, "-Xlinker", "-rpath", "-Xlinker", str(at)])
+
+
 def _compiler(given: str | None) -> list[str]:
     """The compiler's command as words."""
     words = shlex.split(given or os.environ.get(COMPILER) or "cc")
     if not words or shutil.which(words[0]) is None:
         raise StandoffError(
-            f"There is no C compiler {' '.join(words)!r}: install one (on Debian: apt install "
+            f"There is no C compiler {shown(' '.join(words))}: install one (on Debian: apt install "
             f"gcc), or name it in {COMPILER}."
         )
     return words

@@ -12,6 +12,7 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
 from standoff.geometry.validation import Array
+from standoff.wording import counted
 
 if TYPE_CHECKING:
     from standoff.solids import Solid
@@ -78,7 +79,7 @@ class PartReport:
         """The report in lines of text."""
         kinds = ", ".join(f"{n} {kind}" for kind, n in sorted(self.faces.items()))
         count = sum(self.faces.values())
-        found = [f"{self.name}: {count} faces ({kinds})"]
+        found = [f"{self.name}: {counted(count, 'face')} ({kinds})"]
         if self.refused:
             return [*found, f"  refused: {self.refused}"]
         after = f" {unit}" if unit else ""
@@ -189,7 +190,9 @@ class Assembly:
         from standoff.errors import CadError
 
         if len(self.parts) != 1:
-            raise CadError(f"{self.source} has {len(self.parts)} parts: take one of .parts.")
+            raise CadError(
+                f"{self.source} has {counted(len(self.parts), 'part')}: take one of .parts."
+            )
         part = self.parts[0]
         if np.array_equal(part.pose, np.eye(4)):
             return part.shape
@@ -199,8 +202,8 @@ class Assembly:
         """What was found, as text."""
         converted = self.file_unit and self.unit != self.file_unit
         told = f", converted from {self.file_unit}" if converted else ""
-        head = f"{self.source}: {len(self.parts)} parts, lengths in {self.unit or 'no known unit'}"
-        lines = [head + told]
+        parts, unit = counted(len(self.parts), "part"), self.unit or "no known unit"
+        lines = [f"{self.source}: {parts}, lengths in {unit}{told}"]
         seen: list[PartReport] = []
         for part in self.parts:
             if all(part.report is not one for one in seen):

@@ -7,6 +7,7 @@ from typing import Any
 from standoff.cad.measures import tolerance_of, volume_of
 from standoff.cad.opencascade import cast, explored, is_kind
 from standoff.cad.tolerances import SEWN_AT_LEAST
+from standoff.wording import counted
 
 
 def healed(shape: Any) -> tuple[Any, tuple[str, ...]]:
@@ -52,7 +53,8 @@ def _sewn(shape: Any) -> tuple[Any, list[str]]:
     sewing.Add(shape)
     sewing.Perform()
     found = sewing.SewedShape()
-    told = [f"sewn: {sewing.NbFreeEdges()} edges stay open, {sewing.NbContigousEdges()} joined"]
+    loose = counted(sewing.NbFreeEdges(), "edge stays", "edges stay")
+    told = [f"sewn: {loose} open, {sewing.NbContigousEdges()} joined"]
     shells = list(explored(found, "shell"))
     if len(shells) != 1 or sewing.NbFreeEdges():
         return found, told

@@ -40,6 +40,7 @@ from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.validation import Array
+from standoff.wording import counted
 
 if TYPE_CHECKING:
     from standoff.solids import SelfIntersection, Solid
@@ -163,15 +164,15 @@ def _check(shape: Any, size: float) -> None:
     if at or not is_kind(shape, "solid"):
         where = ", ".join(at[:MOST_NAMED]) + (", ..." if len(at) > MOST_NAMED else "")
         raise Refused(
-            f"its shell is open: {len(at)} edges bound one face, near {where}; heal=True sews what "
-            "lies within the file's tolerance"
+            f"its shell is open: {counted(len(at), 'edge bounds', 'edges bound')} one face, near "
+            f"{where}; heal=True sews what lies within the file's tolerance"
             if at
             else "it is a closed shell, but no solid; heal=True makes it one"
         )
     if volume_of(shape) < 0.0:
         raise Refused(
-            f"it is inside out: its {len(faces)} faces, from face 1 (a {kind_of(faces[0])}) on, "
-            "face into the solid; heal=True turns it"
+            f"it is inside out: its {counted(len(faces), 'face')}, from face 1 (a "
+            f"{kind_of(faces[0])}) on, face into the solid; heal=True turns it"
         )
     faults = faults_of(shape)
     if faults:

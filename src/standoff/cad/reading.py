@@ -11,6 +11,7 @@ from standoff.cad.assembly import Assembly, Part, PartReport
 from standoff.cad.files import ENDINGS, check_lines, check_step, existing
 from standoff.checks.real_numbers import shown
 from standoff.errors import CadError, StandoffError, StandoffTypeError
+from standoff.wording import counted
 
 UNITS = ("mm", "cm", "m", "inch")
 MOST_NAMED = 5
@@ -215,7 +216,7 @@ def _assembly(
     if refusals and (keep == "all" or not parts):
         more = f"; and {len(refusals) - MOST_NAMED} more" if len(refusals) > MOST_NAMED else ""
         raise CadError(
-            f"{source}: {len(refusals)} of {len(instances)} parts refused. "
+            f"{source}: {len(refusals)} of {counted(len(instances), 'part')} refused. "
             + "; ".join(refusals[:MOST_NAMED])
             + more,
             refusals=tuple(refusals),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,9 @@ from standoff.errors import MaskedNumbers, StandoffError, StandoffTypeError, Unr
 
 SHOWN_CHARACTERS = 200
 """Longest piece of an offending value that a message repeats, in characters."""
+
+SHOWN_NUMBERS = 16
+"""Most numbers of an array that a message repeats: those of a pose."""
 
 
 DEEPEST = 8
@@ -25,9 +29,12 @@ number."""
 
 
 def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
-    """Return `value` as a message repeats it: its repr, cut short."""
+    """Return `value` as a message repeats it: its repr on one line, cut short; of a large array,
+    its shape."""
+    if isinstance(value, np.ndarray) and value.size > SHOWN_NUMBERS:
+        return f"an array of {' by '.join(map(str, value.shape))} numbers"
     try:
-        text = repr(value)
+        text = _items(value) or repr(value)
     except RecursionError:
         return f"a {type(value).__name__} nested too deeply to be shown"
     except ValueError:
@@ -35,8 +42,21 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
         if not isinstance(value, int):
             return f"a {type(value).__name__} with a number too long to be shown"
         text = hex(value)
+    text = _LINE_ENDS.sub(" ", text)  # an array's rows; those in a string are escapes already
     return text if len(text) <= characters else text[: characters - 1] + "…"
 
+
+def _items(value: Any) -> str:
+    """What is shown of a short tuple or list with arrays in it, each by itself; else nothing."""
+    if type(value) not in (tuple, list) or len(value) > SHOWN_NUMBERS:
+        return ""
+    if not any(isinstance(item, np.ndarray) for item in value):
+        return ""
+    brackets = repr(type(value)())
+    return brackets[0] + ", ".join(map(shown, value)) + brackets[1]
+
+
+_LINE_ENDS = re.compile(r"\s*\n\s*")
 
 HOST = {1: "CPU", 3: "CUDA, pinned", 11: "ROCm, pinned", 13: "CUDA, managed"}
 """Devices whose memory the CPU reads, by DLPack's numbers."""

@@ -23,6 +23,7 @@ def report_facts(report: Report) -> dict[str, Any]:
         "clearance": report.clearance,
         "holds": not report.failures,
         "certified": report.certified,
+        "advice": {status.name: status.advice for status in report.statuses},
         "verdicts": {verdict.name: n for verdict, n in report.tally().items()},
         "pairs": [row_facts(row) for row in report.rows],
         "far": {
@@ -64,6 +65,7 @@ def row_facts(row: Row) -> dict[str, Any]:
         "in_cavity": in_cavity(row),
         "certified": not row.nearest.uncertified,
         "uncertified_frames": row.nearest.uncertified,
+        "uncertified_as": [status.name for status in row.nearest.statuses],
         "time": row.nearest.time,
         "least_lower_bound": row.nearest.lower_bound,
         "touching_within": touching_tolerance(answer),

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from standoff.clearance.report import Report, at_least
+from standoff.clearance.report import Report
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import not_installed
-from standoff.wording import short_name
+from standoff.wording import at_least, short_name
 
 try:
     from matplotlib import colormaps
@@ -163,7 +163,7 @@ def _draw_cell(
             )
         )
     if written:
-        text = f"≥{at_least(cell.gap, 3)}" if cell.far else f"{cell.gap:.3g}"
+        text = f"≥{at_least(cell.gap, 3)}" if cell.far else at_least(cell.gap, 3)
         if cell.verdict in WORDS:
             text = WORDS[cell.verdict]
         if cell.allowed and not cell.fails and cell.verdict is not Verdict.APART:

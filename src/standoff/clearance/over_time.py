@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff.clearance.report import Nearest, horizon
+from standoff.clearance.report import Nearest, horizon, uncertified_in
 from standoff.progress import Progress
 from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
+from standoff.tracking.status import Status
 from standoff.world import World, WorldAnswer
 from standoff.world.state import WorldCounts
 
@@ -91,10 +92,10 @@ class LeastOfAll:
     def add(self, time: float, answer: WorldAnswer) -> None:
         """Take in a frame."""
         pairs = answer.pairs
-        distances, lowest, certified = pairs.distance, pairs.lower_bound, pairs.certified
+        distances, lowest, status = pairs.distance, pairs.lower_bound, pairs.status
         order, names = pairs.order, pairs.names
         for k, name in enumerate(names):
-            self._one(name, time, (float(order[k]), float(lowest[k])), not certified[k], answer, k)
+            self._one(name, time, (float(order[k]), float(lowest[k])), status[k], answer, k)
         # a wall around a body is no distance of the course
         distances = np.where(np.isneginf(order), np.inf, distances)
         k = int(np.argmin(distances)) if np.isfinite(distances).any() else -1
@@ -109,14 +110,14 @@ class LeastOfAll:
         names: NamePair,
         time: float,
         found: tuple[float, float],
-        uncertified: bool,
+        status: Status,
         answer: WorldAnswer,
         k: int,
     ) -> None:
         order, lower = found
-        known = self.near.get(names)
+        known, (uncertified, statuses) = self.near.get(names), uncertified_in(status)
         if known is None:
-            self.near[names] = Nearest(answer.pairs[k], time, lower, int(uncertified))
+            self.near[names] = Nearest(answer.pairs[k], time, lower, uncertified, statuses)
             self._order[names] = order
         elif uncertified or lower < known.lower_bound or order < self._order[names]:
             nearer = order < self._order[names]
@@ -125,7 +126,8 @@ class LeastOfAll:
                 answer.pairs[k] if nearer else known.answer,
                 time if nearer else known.time,
                 min(lower, known.lower_bound),
-                known.uncertified + int(uncertified),
+                known.uncertified + uncertified,
+                tuple(dict.fromkeys(known.statuses + statuses)),
             )
 
     def walked(self) -> Walked:

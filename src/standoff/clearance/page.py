@@ -21,7 +21,8 @@ from standoff.clearance.report import (
     Report,
     Row,
     Wanted,
-    at_least,
+    bound_texts,
+    gap_text,
     nearest_of,
     no_clearance,
     report_on,
@@ -31,7 +32,7 @@ from standoff.motion import Pose
 from standoff.scene.reader import Array
 from standoff.tracking.proximity import shown_size
 from standoff.version import __version__
-from standoff.wording import counted, printable
+from standoff.wording import at_least, counted, printable
 
 POLICY = (
     '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; '
@@ -131,8 +132,8 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         when = f"at {looked.start:g} s"
     else:
         when = (
-            f"in {looked.frames} frames from {looked.start:g} s to {looked.end:g} s (nothing is "
-            "said between them)"
+            f"in {counted(looked.frames, 'frame')} from {looked.start:g} s to {looked.end:g} s "
+            "(of the time between them nothing is said)"
         )
     verdicts = ", ".join(
         f'{n} <span class="mark {verdict.name}">{verdict.name}</span>'
@@ -143,17 +144,21 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         f"{counted(len(report.world.bodies), 'body', 'bodies')}, {when}: {verdicts}.",
         f"Proven for all pairs: a clearance of {at_least(report.clearance)} {unit}."
         if report.clearance > -math.inf
-        else f"Of the clearance of all pairs {escape(printable(no_clearance(report)))}.",
+        else f"No clearance is proven for all pairs: {escape(printable(no_clearance(report)))}.",
     ]
     if report.clearance > -math.inf and undecided(report):
         lines.append(f"But {escape(printable(undecided(report)))}.")
     if report.failures:
         failing = counted(len(report.failures), "pair")
-        lines.append(f"<strong>{failing} not proven to keep what is asked.</strong>")
+        what = "is" if len(report.failures) == 1 else "are"
+        lines.append(f"<strong>{failing} {what} not proven to keep what is asked.</strong>")
     elif report.least is not None:
-        lines.append(f"Every pair is proven to keep {report.least:g} {unit}, or is allowed not to.")
+        lines.append(
+            f"Every pair is proven to keep {at_least(report.least)} {unit}, or is allowed not to."
+        )
     if not report.certified:
-        lines.append("<strong>Some answers are not certified.</strong>")
+        lines.append("<strong>Some answers are not certified.</strong> Their bounds hold.")
+        lines += [f"{status.name}: {escape(status.advice)}" for status in report.statuses]
     return '<p class="summary">' + "<br>".join(lines) + "</p>"
 
 
@@ -190,9 +195,7 @@ def _table(report: Report, unit: str, *, timed: bool) -> str:
 def _row(row: Row, number: str, *, timed: bool) -> str:
     answer = row.answer
     size = shown_size(answer)
-    gap, lower, upper = without_roundoff(
-        [answer.distance, row.nearest.lower_bound, answer.upper_bound], size
-    ).tolist()
+    lower, upper = bound_texts(row)
     bodies = "<br>".join(
         escape(printable(" ".join(filter(None, each))))
         for each in zip(answer.names, answer.pieces, strict=True)
@@ -202,13 +205,14 @@ def _row(row: Row, number: str, *, timed: bool) -> str:
     if row.fit is not None:
         notes.append(f"allowed {row.fit.allowance()}: {row.fit.reason}")
     if row.nearest.uncertified:
-        notes.append(f"not certified: {answer.status.name}")
+        told = ", ".join(status.name for status in row.nearest.statuses)
+        notes.append(f"not certified: {told or answer.status.name}")
     cells = [
         f"<td>{number}</td>",
         f'<td><span class="mark {row.verdict.name}">{row.verdict.name}</span></td>',
         f"<td>{bodies}</td>",
-        f'<td class="number">{gap:.6g}</td>',
-        f"<td>{at_least(lower)}<br>{upper:.6g}</td>",
+        f'<td class="number">{gap_text(answer)}</td>',
+        f"<td>{lower}<br>{upper}</td>",
         f"<td>{points}</td>",
         *([f'<td class="number">{row.nearest.time:.6g}</td>'] if timed else []),
         f'<td class="note">{escape(printable("; ".join(filter(None, notes))))}</td>',

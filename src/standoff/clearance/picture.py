@@ -16,13 +16,13 @@ from standoff.bodies.drawing.body_view import FACE_COLOURS, across, direction_to
 from standoff.bodies.drawing.pair_picture import USUAL_VIEW, seen_from
 from standoff.bodies.drawing.solids import Look, Solid, draw_solid, solid_of
 from standoff.bodies.tolerances import FLAT_CLOUD
-from standoff.clearance.report import Report, Row
+from standoff.clearance.report import Report, Row, gap_text
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import not_installed
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import distance
-from standoff.wording import short_name
+from standoff.wording import at_least, at_most, short_name
 from standoff.world import Compound, World
 from standoff.world.shapes import boundary_of
 
@@ -266,11 +266,12 @@ def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
     for number, row in enumerate(rows, 1):
         a, b = (short_name(name) for name in row.names)
         gap = row.answer.distance
-        told = f"{'depth' if gap < 0.0 else 'gap'} {abs(gap):.4g} {unit}".rstrip()
+        text = gap_text(row.answer, 4).removeprefix("-")
+        told = f"{'depth' if gap < 0.0 else 'gap'} {text} {unit}".rstrip()
         if row.verdict is Verdict.TOUCHING:
             told = "touching"
         if row.verdict is Verdict.CONTAINED:
-            told = f"inside, wall {gap:.4g} {unit}".rstrip()
+            told = f"inside, wall {text} {unit}".rstrip()
         if row.verdict is Verdict.UNDECIDED:
             told = undecided_gap(row, unit)
         label = f"{number}  {a} - {b}: {told}"
@@ -283,5 +284,5 @@ def undecided_gap(row: Row, unit: str) -> str:
     low, high = row.nearest.lower_bound, row.answer.upper_bound
     unit = f" {unit}" if unit else ""
     if low == -math.inf:
-        return f"undecided, gap at most {high:.4g}{unit}"
-    return f"undecided, gap {low:.4g} to {high:.4g}{unit}"
+        return f"undecided, gap at most {at_most(high, 4)}{unit}"
+    return f"undecided, gap {at_least(low, 4)} to {at_most(high, 4)}{unit}"

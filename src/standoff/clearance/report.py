@@ -7,9 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from standoff.bodies.plain_data import without_roundoff
+from standoff.bodies.tolerances import SHOWN_ROUNDOFF
 from standoff.clearance.fits import Fit
-from standoff.clearance.tolerances import SHOWN_ABOVE
-from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
+from standoff.clearance.verdicts import Verdict, pair_slack, touching_tolerance, verdict_of
+from standoff.tracking.proximity import shown_size
+from standoff.tracking.status import Status
+from standoff.wording import at_least, at_most
 from standoff.world import PairAnswer, SolidPairAnswer, World, WorldAnswer
 
 MOST_BOUNDED = 20_000
@@ -30,12 +34,15 @@ class Nearest(NamedTuple):
         The least of all frames [length].
     uncertified : int
         Frames whose answer is not proven.
+    statuses : tuple of Status
+        How these ended, each once.
     """
 
     answer: PairAnswer | SolidPairAnswer
     time: float
     lower_bound: float
     uncertified: int
+    statuses: tuple[Status, ...] = ()
 
 
 class Wanted(NamedTuple):
@@ -151,6 +158,12 @@ class Report:
         return not any(row.nearest.uncertified for row in self.rows)
 
     @property
+    def statuses(self) -> tuple[Status, ...]:
+        """How the answers ended that are not proven, each once."""
+        found = (status for row in self.rows for status in row.nearest.statuses)
+        return tuple(dict.fromkeys(found))
+
+    @property
     def failures(self) -> tuple[tuple[tuple[str, str], str], ...]:
         """The pairs that do not hold, and why."""
         found = [(row.names, row.failure) for row in self.rows if row.failure]
@@ -170,10 +183,15 @@ class Report:
         return found
 
 
+def uncertified_in(status: Status) -> tuple[int, tuple[Status, ...]]:
+    """Return in how many frames an answer is not proven, of one frame, and with which statuses."""
+    return (0, ()) if status.certified else (1, (status,))
+
+
 def nearest_of(answer: WorldAnswer, time: float) -> dict[tuple[str, str], Nearest]:
     """Return the near pairs of one frame."""
     return {
-        pair.names: Nearest(pair, time, pair.lower_bound, int(not pair.certified))
+        pair.names: Nearest(pair, time, pair.lower_bound, *uncertified_in(pair.status))
         for pair in answer.pairs
     }
 
@@ -249,21 +267,24 @@ def _row(world: World, nearest: Nearest, wanted: Wanted, fits: Mapping[frozenset
             failure = f"inside the other's material, the wall at least {at_least(lower)} thick"
     elif fit is not None:
         if -lower > fit.depth + touching_tolerance(nearest.answer):
-            failure = f"up to {-lower:.6g} deep, and {fit.depth:g} is allowed"
+            failure = f"up to {at_most(-lower)} deep, and {fit.depth:g} is allowed"
     elif required is not None and lower < required:
-        failure = not_kept(required, lower)
+        failure = not_kept(required, lower) + _nearly_kept(required, nearest)
     elif wanted.fits is not None and verdict in (Verdict.OVERLAPPING, Verdict.UNDECIDED):
         failure = f"{verdict.name.lower()}, and not among the fits that are allowed"
     return Row(nearest, verdict, required, fit, failure)
 
 
-def at_least(bound: float, digits: int = 6) -> str:
-    """Return a lower bound as a text that says no more than is proven, but for roundoff."""
-    text = f"{bound:.{digits}g}"
-    if math.isfinite(bound) and float(text) > bound + SHOWN_ABOVE * abs(bound):
-        step = 10.0 ** (math.floor(math.log10(abs(bound))) + 1 - digits)
-        text = f"{float(text) - step:.{digits}g}"
-    return text
+def gap_text(answer: PairAnswer | SolidPairAnswer, digits: int = 6) -> str:
+    """Return the gap of a pair as found: rounded down, as its bounds, but for its own roundoff."""
+    size = shown_size(answer)
+    (gap,) = without_roundoff([answer.distance], size).tolist()
+    return at_least(gap + SHOWN_ROUNDOFF * size if gap else gap, digits)
+
+
+def bound_texts(row: Row) -> tuple[str, str]:
+    """Return the lower and the upper bound of a row, each rounded to its safe side."""
+    return at_least(row.nearest.lower_bound), at_most(row.answer.upper_bound)
 
 
 MET = "solids overlap, or one is inside another's material"
@@ -272,11 +293,11 @@ MOST_NAMED = 3
 
 
 def no_clearance(report: Report) -> str:
-    """Said in place of a clearance without a bound: why there is none."""
+    """Why there is no clearance of all pairs with a bound."""
     told = undecided(report)
     deep = (Verdict.OVERLAPPING, Verdict.CONTAINED)
     met = not told or any(row.verdict in deep for row in report.rows)
-    return "none is proven: " + "; ".join([MET] * met + [told] * bool(told))
+    return "; ".join([MET] * met + [told] * bool(told))
 
 
 def undecided(report: Report) -> str:
@@ -286,17 +307,27 @@ def undecided(report: Report) -> str:
         return ""
     named = ", ".join(" - ".join(row.names) for row in rows[:MOST_NAMED])
     more = f" and {len(rows) - MOST_NAMED} more" if len(rows) > MOST_NAMED else ""
-    return f"whether these meet is not decided: {named}{more}"
+    return f"it is not decided whether these meet: {named}{more}"
 
 
 def not_kept(required: float, lower: float) -> str:
-    """Return the sentence on a clearance that is not proven: with all digits if it takes them."""
-    known = at_least(lower)
-    if float(known) >= required:
-        known = f"{lower:.17g}"
+    """Return the sentence on a clearance that is not proven."""
+    known, missing = at_least(lower), at_most(required - lower, 3)
     if lower < 0.0:
-        return f"not proven to keep {required:g}: the lower bound is {known}"
-    return f"not proven to keep {required:g}: at least {known} apart"
+        return f"not proven to keep {required:.15g}: the lower bound is {known}"
+    return f"not proven to keep {required:.15g}: at least {known} apart, {missing} too little"
+
+
+def _nearly_kept(required: float, nearest: Nearest) -> str:
+    """Said of a pair made for the very clearance that is asked: why it fails, and what to ask."""
+    tolerance = touching_tolerance(nearest.answer)
+    if not required - nearest.lower_bound <= tolerance < required:
+        return ""
+    slack, nominal = pair_slack(nearest.answer), at_least(required - tolerance, 9)
+    return (
+        f", within the touching tolerance of these parts, {at_most(tolerance, 3)} "
+        f"(their slack {at_most(slack, 3)}): ask for {nominal}, and the nominal gap passes"
+    )
 
 
 def _far_failure(
@@ -320,7 +351,7 @@ def _note(world: World, fit: Fit, rows: Sequence[Row], far: Sequence[Far]) -> Fi
     for row in rows:
         if row.fit is fit:
             if row.verdict is Verdict.APART:
-                return FitNote(fit, f"not in contact: {row.answer.distance:.6g} apart", False)
+                return FitNote(fit, f"not in contact: {gap_text(row.answer)} apart", False)
             return FitNote(fit, row.failure, not row.failure)
     for each in far:
         if frozenset(each.names) == fit.pair:

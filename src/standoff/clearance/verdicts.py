@@ -44,8 +44,12 @@ def touching_tolerance(answer: PairAnswer | SolidPairAnswer) -> float:
     may be from what they are taken for.
     """
     size = max((body.size for body in answer.bodies if is_bounded(body)), default=0.0)
-    slack = sum(slack_of(body) for body in answer.bodies)
-    return TOUCHING_PART * size + slack
+    return TOUCHING_PART * size + pair_slack(answer)
+
+
+def pair_slack(answer: PairAnswer | SolidPairAnswer) -> float:
+    """Return the slack of both bodies, which the lower bound has subtracted [length]."""
+    return sum(slack_of(body) for body in answer.bodies)
 
 
 def verdict_of(answer: PairAnswer | SolidPairAnswer) -> Verdict:

@@ -20,7 +20,7 @@ from standoff.cli.arguments import (
     ViewCommand,
     WarmupCommand,
 )
-from standoff.kernels.compiler.notices import ALL_SECONDS, say
+from standoff.kernels.compiler.notices import ALL_SECONDS, say, takes
 
 SHOWN_CHARACTERS = 100
 """Longest piece of the arguments that is repeated."""
@@ -71,7 +71,7 @@ def _doing_without_a_scene(
         case RobotCommand():
             return f"reading {shown(command.model)}"
         case WarmupCommand():
-            return f"loading all kernels; what must be compiled takes about {ALL_SECONDS} s in all"
+            return f"loading all kernels; compiling all of them takes {takes(ALL_SECONDS)}"
         case LibraryCommand():
             return ""  # reported by what builds it, from Python too
         case _:

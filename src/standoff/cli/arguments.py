@@ -111,12 +111,12 @@ class ClearanceFiles:
 
 @dataclass(frozen=True)
 class ClearanceCommand:
-    """Report the clearance of all pairs of a scene's bodies, proven.
+    """Report the clearance of all pairs of a scene's bodies, or of an assembly's parts, proven.
 
     Example: standoff clearance examples/fits.toml --min 0.3 --allow examples/fits-allowed.toml
 
-    Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 a pair is not proven to keep
-    what it must, or an answer is not certified.
+    Exit codes: 0 done, and all that --min, --allow and margins ask is proven, 1 results could not
+    be written, 2 bad input, 3 a pair is not proven to keep what it must.
     """
 
     scene: SceneFile
@@ -275,7 +275,7 @@ class ServoCommand:
 
 @dataclass(frozen=True)
 class WarmupCommand:
-    """Compile all kernels ahead of time, so that no later use waits for it.
+    """Compile all kernels ahead of time, so that nobody waits for it later.
 
     Once per installation: what is already compiled is only loaded. Bodies made of formulas have
     their own code, which each process compiles when it creates them; that is not done here.
@@ -292,7 +292,7 @@ class WarmupCommand:
 class LibraryCommand:
     """Build the shared library and the header for programs in C and C++.
 
-    It takes about a minute and needs a C compiler: `cc`, or the one that CC names in the
+    It takes some minutes and needs a C compiler: `cc`, or the one that CC names in the
     environment. standoff.c_interface.save_pair writes the files of pairs that it loads;
     docs/c-interface.md has a complete program.
 

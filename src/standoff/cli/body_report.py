@@ -26,7 +26,7 @@ def solid_rows(solid: Solid, unit: str) -> Rows:
     assert isinstance(report, BoundaryReport)
     kinds = Counter(kind.value for kind in solid.boundary.edge_kinds)
     edges = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
-    charts = "" if report.charts == report.faces else f", in {report.charts} charts"
+    charts = "" if report.charts == report.faces else f", in {counted(report.charts, 'chart')}"
     cavities = len(report.cavities)
     return [
         ("dimension", "3, spatial"),
@@ -54,7 +54,7 @@ def report_rows(body: Body, unit: str) -> Rows:
     report = body.check()
     smooth = f", {report.smooth_edges} of them smooth" if report.smooth_edges else ""
     skin = f"{body.radius:.9g} {unit}, swept over the core" if body.radius else "none"
-    charts = "" if report.charts == report.faces else f", in {report.charts} charts"
+    charts = "" if report.charts == report.faces else f", in {counted(report.charts, 'chart')}"
     return [
         ("dimension", "2, planar" if report.dimension == 2 else "3, spatial"),
         ("faces", f"{report.faces}{charts}"),
@@ -81,7 +81,12 @@ def _patch_rows(report: BodyReport, unit: str) -> Rows:
     inside = sum(patch.hemisphere for patch in report.patches)
     if report.patches and report.dimension == 3:
         count = len(report.patches)
-        rows.append(("hemispheres", f"normals of {inside} of {count} patches fit an open one"))
+        rows.append(
+            (
+                "hemispheres",
+                f"normals of {inside} of {counted(count, 'patch', 'patches')} fit an open one",
+            )
+        )
     dented = [patch for patch in report.patches if patch.defect > 0.0]
     if dented:
         worst = max(dented, key=lambda patch: patch.defect)

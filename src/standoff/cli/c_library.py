@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 from standoff.c_interface import build_library
+from standoff.c_interface.library import link_command
 from standoff.cli.arguments import LibraryCommand
 from standoff.cli.errors import CommandError, ExitCode, WriteError
 from standoff.cli.facts import json_text
@@ -38,5 +39,5 @@ def run_c_library(command: LibraryCommand) -> int:
         tell(json_text({"library": str(library), "header": str(header)}))
         return ExitCode.DONE
     tell(f"{library} and {header}, built in {time.perf_counter() - started:.0f} s")
-    tell(f"compile a program with: cc program.c -I{command.folder} -L{command.folder} -lstandoff")
+    tell(f"compile a program with: {link_command(command.folder)}")
     return ExitCode.DONE

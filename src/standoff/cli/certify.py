@@ -29,6 +29,7 @@ from standoff.robots.model_files import among
 from standoff.robots.proof import How, PathProof
 from standoff.robots.robot import Robot
 from standoff.scene import load_scene
+from standoff.wording import at_least, counted
 
 MOST_SPANS = 8
 """Undecided spans that are printed; the JSON has all."""
@@ -127,13 +128,13 @@ def _lines(
 ) -> list[str]:
     span = f"{proof.start:g} to {proof.end:g} s"
     lines = [
-        f"robot     {robot.loaded.source}: {len(robot.pairs)} pairs",
-        f"path      {command.path.name}: {len(table.waypoints)} waypoints, {span}",
+        f"robot     {robot.loaded.source}: {counted(len(robot.pairs), 'pair')}",
+        f"path      {command.path.name}: {counted(len(table.waypoints), 'waypoint')}, {span}",
         f"verdict   {proof.verdict.name}",
         f"clearance {proof.clearance:g} asked for",
     ]
     if proof:
-        lines.append(f"proven    none comes nearer than {proof.proven:.6g} at any instant")
+        lines.append(f"proven    no pair comes nearer than {at_least(proof.proven)} at any instant")
     else:
         lines.append(f"proven    until {proof.time:.9g} s")
     if proof.witness is not None:
@@ -150,7 +151,7 @@ def _lines(
         lines.append(f"advice    {proof.verdict.advice}")
     counts = proof.counts
     lines.append(
-        f"took      {counts.steps} steps, {counts.configurations} configurations, "
-        f"{counts.queries} distances"
+        f"took      {counted(counts.steps, 'step')}, "
+        f"{counted(counts.configurations, 'configuration')}, {counted(counts.queries, 'distance')}"
     )
     return lines + [f"written   {path}" for path in written]

@@ -51,8 +51,7 @@ def run_clearance(command: ClearanceCommand) -> int:
         tell(json_text(_facts(scene, report, looked, written)))
     else:
         print_report(scene, report, looked, written, verbose=command.report.verbose)
-    holds = report.certified and not report.failures
-    return ExitCode.DONE if holds else ExitCode.NOT_CERTIFIED
+    return ExitCode.NOT_CERTIFIED if report.failures else ExitCode.DONE
 
 
 def _check(command: ClearanceCommand) -> None:

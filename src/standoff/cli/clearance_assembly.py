@@ -59,8 +59,7 @@ def run_on_assembly(command: ClearanceCommand) -> int:
         tell(json_text(_facts(file, report, written)))
     else:
         print_report(file, report, NOTHING_MOVES, written, verbose=command.report.verbose)
-    holds = report.certified and not report.failures
-    return ExitCode.DONE if holds else ExitCode.NOT_CERTIFIED
+    return ExitCode.NOT_CERTIFIED if report.failures else ExitCode.DONE
 
 
 def _report(file: AssemblyFile, parts: dict[str, Any], within: float, wanted: Wanted) -> Report:

@@ -11,15 +11,14 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.assembly import AssemblyFile, Source
 from standoff.clearance.facts import in_cavity
-from standoff.clearance.report import Looked, Report, Row, at_least, no_clearance
+from standoff.clearance.report import Looked, Report, Row, bound_texts, gap_text, no_clearance
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
 from standoff.cli.terminal import tell
 from standoff.tracking.proximity import shown_size
-from standoff.wording import counted, printable
+from standoff.wording import at_least, counted, printable
 
 WIDTH = 120
 """Characters of a table where stdout is not a terminal, such as a file."""
@@ -70,7 +69,10 @@ def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
     if looked.frames == 1:
         return [*lines, line("time", time_text(looked.start))]
     span = f"{time_text(looked.start)} to {time_text(looked.end)}"
-    return [*lines, line("frames", f"{looked.frames} from {span}; nothing is said between frames")]
+    return [
+        *lines,
+        line("frames", f"{looked.frames} from {span}; of the time between them nothing is said"),
+    ]
 
 
 def _table(rows: Sequence[Row], unit: str, *, timed: bool) -> Table:
@@ -86,7 +88,7 @@ def _table(rows: Sequence[Row], unit: str, *, timed: bool) -> Table:
         cells = [
             Text(row.verdict.name, style=STYLES[row.verdict]),
             Text("\n".join(body_text(row))),
-            Text(_gap(row)),
+            Text(gap_text(row.answer)),
             Text(_proven(row)),
             Text(_points(row)),
         ]
@@ -103,17 +105,9 @@ def body_text(row: Row) -> list[str]:
     ]
 
 
-def _gap(row: Row) -> str:
-    (gap,) = without_roundoff([row.answer.distance], shown_size(row.answer))
-    return f"{gap:.6g}"
-
-
 def _proven(row: Row) -> str:
-    answer = row.answer
-    lower, upper = without_roundoff(
-        [row.nearest.lower_bound, answer.upper_bound], shown_size(answer)
-    )
-    return f"≥ {at_least(lower)}\n≤ {upper:.6g}"
+    lower, upper = bound_texts(row)
+    return f"≥ {lower}\n≤ {upper}"
 
 
 def _points(row: Row) -> str:
@@ -139,25 +133,24 @@ def _tail(
         lines.append(line("far", f"{count}, proven to be {bound} or more apart"))
     told = ", ".join(f"{n} {verdict.name}" for verdict, n in report.tally().items() if n)
     lines.append(line("verdicts", told or "no pair counts"))
-    told = f"{_clearance(report)} {unit}, proven for all pairs"
-    lines.append(line("clearance", told if report.clearance > -math.inf else no_clearance(report)))
+    told = f"{at_least(report.clearance)} {unit}, proven for all pairs"
+    lines.append(
+        line(
+            "clearance",
+            told if report.clearance > -math.inf else f"none is proven: {no_clearance(report)}",
+        )
+    )
     lines += _certified(report, looked)
     for k, (names, failure) in enumerate(report.failures):
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))
     if not report.failures and report.least is not None:
-        lines.append(line("keeps", f"{report.least:g} {unit} in every pair, proven"))
+        lines.append(line("keeps", f"{at_least(report.least)} {unit} in every pair, proven"))
     for k, note in enumerate(report.fits):
         fit = note.fit
         said = f"; {note.note}" if note.note else ""
         text = f"{fit.a} - {fit.b}, {fit.allowance(unit)} ({fit.reason}){said}"
         lines.append(line("allowed" if k == 0 else "", text))
     return [*lines, *(line("wrote" if k == 0 else "", str(p)) for k, p in enumerate(written))]
-
-
-def _clearance(report: Report) -> str:
-    sizes = [shown_size(row.answer) for row in report.rows]
-    (clearance,) = without_roundoff([report.clearance], max(sizes, default=0.0))
-    return at_least(clearance)
 
 
 def _certified(report: Report, looked: Looked) -> list[str]:
@@ -169,6 +162,7 @@ def _certified(report: Report, looked: Looked) -> list[str]:
         if missed:
             frames = f" in {counted(missed, 'frame')}" if looked.frames > 1 else ""
             pair = " - ".join(row.names)
-            status = f": {row.answer.status.name}" if looked.frames == 1 else ""
-            lines.append(f"{pair}{status}{frames}")
+            status = ", ".join(status.name for status in row.nearest.statuses)
+            lines.append(f"{pair}: {status}{frames}")
+    lines += [f"{status.name}: {status.advice}" for status in report.statuses]
     return [line("not certified" if k == 0 else "", text) for k, text in enumerate(lines)]

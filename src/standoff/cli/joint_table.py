@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
+from standoff.checks.real_numbers import shown
 from standoff.cli.errors import CommandError
 from standoff.robots.robot_model import RobotModel
+from standoff.wording import counted
 
 Array = NDArray[np.float64]
 
@@ -103,10 +105,12 @@ def _columns(robot: RobotModel) -> dict[str, int]:
 
 def _numbers(file: Path, k: int, row: list[str], width: int) -> list[float]:
     if len(row) != width:
-        raise CommandError(f"{file}, line {k}: has {len(row)} columns, but {width} are asked for")
+        raise CommandError(
+            f"{file}, line {k}: has {counted(len(row), 'column')}, but {width} are asked for"
+        )
     for text in row:
         if not _is_number(text):
-            raise CommandError(f"{file}, line {k}: {text.strip()!r} is not a number")
+            raise CommandError(f"{file}, line {k}: {shown(text.strip())} is not a number")
     return [float(text) for text in row]
 
 

@@ -73,7 +73,7 @@ class ReportFlags:
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """As JSON, with everything there is to know."""
     verbose: Annotated[bool, arg(help_behavior_hint="")] = False
-    """With every count of the work, also those that are zero."""
+    """With all counts of the work, also those that are zero."""
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from standoff import __version__
+from standoff.checks.real_numbers import shown
 from standoff.cli.arguments import RobotCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
@@ -15,6 +16,7 @@ from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.robots.answer import RobotAnswer
 from standoff.robots.robot import Robot
+from standoff.wording import at_least
 
 
 def run_robot(command: RobotCommand) -> int:
@@ -45,7 +47,7 @@ def _numbers(text: str) -> Any:
     try:
         return np.array([float(part) for part in text.replace(",", " ").split()])
     except ValueError as error:
-        raise CommandError(f"--q: give numbers, such as '0 0.5 -1', not {text!r}") from error
+        raise CommandError(f"--q: give numbers, such as '0 0.5 -1', not {shown(text)}") from error
 
 
 def _lines(
@@ -63,7 +65,7 @@ def _lines(
     return [
         *lines,
         f"nearest at {where}: {a} ({link_a}) - {b} ({link_b}), {nearest.distance:.9g}",
-        f"proven for all pairs: {nearest.clearance:.9g}",
+        f"proven for all pairs: {at_least(nearest.clearance, 9)}",
     ]
 
 

@@ -21,8 +21,9 @@ from standoff.kernels.compiler.notices import say
 from standoff.scene import SceneError
 from standoff.scene.simulation import SimulationScene, load_simulation
 from standoff.servo import Servo, ServoReport
+from standoff.servo.report import fault_told
 from standoff.simulation.device import Fault
-from standoff.wording import printable
+from standoff.wording import counted, printable
 
 HAPLY = "haply"
 LOOKED = 0.05
@@ -141,7 +142,7 @@ def _served(servo: Servo) -> ServoReport:
                 told = servo.latest()
                 if told.ended is None and told.fault is not Fault.NONE:
                     problem = printable(servo.problem)
-                    say(f"the coupler let go: {told.fault.advice} {problem}".rstrip())
+                    say(f"the coupler let go: {fault_told(told.fault)} {problem}".rstrip())
                     break
         finally:
             report = servo.stop()
@@ -158,6 +159,7 @@ def _facts(scene: SimulationScene, report: ServoReport) -> dict[str, Any]:
         "ended": report.ended.name,
         "message": report.message,
         "fault": report.fault.name,
+        "advice": report.fault.advice,
         "problem": report.problem,
         "notes": list(report.notes),
         "ticks": found.ticks,
@@ -174,8 +176,12 @@ def _lines(scene: SimulationScene, report: ServoReport, written: Path | None) ->
     lines = [
         line("scene", scene.title),
         line("ended", report.message),
-        line("ticks", f"{found.ticks} at {report.rate:g} Hz, {found.missed} deadlines missed"),
-        line("engaged", f"{found.engaged} ticks, fault {report.fault.name}"),
+        line(
+            "ticks",
+            f"{found.ticks} at {report.rate:g} Hz, {counted(found.missed, 'deadline')} missed",
+        ),
+        line("engaged", f"in {counted(found.engaged, 'tick')}"),
+        line("fault", f"{fault_told(report.fault)} {report.problem}".rstrip()),
         line("times, µs", "median, p99, p99.9, p99.99, worst"),
     ]
     for name in ("period", "lateness", "work"):

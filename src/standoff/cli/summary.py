@@ -21,7 +21,7 @@ from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
 from standoff.tracking.laws import LAWS, PredictorCorrector
 from standoff.tracking.proximity import shown_size
-from standoff.wording import counted, printable
+from standoff.wording import MOST_DIGITS, at_least, at_most, counted, printable
 from standoff.world.shapes import boundary_of
 
 FIRST_EVENTS = 8
@@ -57,8 +57,7 @@ def answer_lines(
 ) -> list[str]:
     """Return the lines for one answer."""
     unit, size = scene.length_unit, shown_size(answer, scene.pair_shapes)
-    numbers = [answer.distance, answer.lower_bound, answer.upper_bound]
-    distance, lower, upper = without_roundoff(numbers, size).tolist()
+    (distance,) = without_roundoff([answer.distance], size).tolist()
     on_a, on_b = vector_text(answer.point_a, size), vector_text(answer.point_b, size)
     certified = f"yes, {_tolerance_text(COLD_TOLERANCE)}" if answer.certified else "no"
     return [
@@ -66,8 +65,8 @@ def answer_lines(
         *(line("", note) for note in scene.notes),
         line("time", f"{time_text(time)}"),
         line("distance", f"{distance:.15g} {unit}"),
-        line("lower bound", f"{lower:.15g} {unit}"),
-        line("upper bound", f"{upper:.15g} {unit}"),
+        line("lower bound", f"{at_least(answer.lower_bound, MOST_DIGITS)} {unit}"),
+        line("upper bound", f"{at_most(answer.upper_bound, MOST_DIGITS)} {unit}"),
         line(_on(scene.pair[0]), f"{on_a} {unit}, {answer.feature_a}"),
         line(_on(scene.pair[1]), f"{on_b} {unit}, {answer.feature_b}"),
         line(
@@ -96,11 +95,13 @@ def _solid_lines(scene: Scene, answer: SolidProximity) -> list[str]:
     if answer.continuum is not None:
         lines.append(line("continuum", f"a {answer.continuum.kind} of nearest pairs"))
     elif len(answer.minima) > 1:
-        lines.append(line("ties", f"{len(answer.minima)} pairs at this distance"))
+        lines.append(line("ties", f"{counted(len(answer.minima), 'pair')} at this distance"))
     if answer.overlap is not None:
         unit = scene.length_unit
-        lines.append(line("overlap", f"a ball of radius {answer.overlap.radius:.6g} {unit}"))
-        least = f"no translation shorter than {answer.overlap.depth:.6g} {unit} parts them"
+        lines.append(
+            line("overlap", f"a ball of radius {at_least(answer.overlap.radius)} {unit} is in both")
+        )
+        least = f"no translation shorter than {at_least(answer.overlap.depth)} {unit} parts them"
         lines.append(line("depth", least))
     return lines
 

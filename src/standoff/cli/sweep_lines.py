@@ -18,7 +18,7 @@ from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.proximity import shown_size
 from standoff.tracking.status import BY_NUMBER
-from standoff.wording import counted, printable
+from standoff.wording import at_least, counted, printable
 
 FIRST_ROWS = 5
 """Worst rows that are printed; the report has all that the job keeps."""
@@ -77,7 +77,7 @@ def report_lines(report: Report, folder: Path) -> list[str]:
 
 def _certified(report: Report) -> str:
     found = report.found
-    told = f"{grouped(found.certified)} of {grouped(found.rows)} rows, "
+    told = f"{grouped(found.certified)} of {counted(found.rows, 'row', write=grouped)}, "
     told += share_text(found.certified, found.rows)
     missed = found.uncertified
     if missed.count:
@@ -91,8 +91,8 @@ def _spread(spread: Spread, unit: str) -> str:
         return "none"
     mean = spread.sum / spread.count
     return (
-        f"{spread.least:.6g} {unit} (row {spread.least_row}) to {spread.most:.6g} {unit} "
-        f"(row {spread.most_row}), mean {mean:.6g} {unit}"
+        f"{at_least(spread.least)} {unit} (row {spread.least_row}) to {at_least(spread.most)} "
+        f"{unit} (row {spread.most_row}), mean {mean:.6g} {unit}"
     )
 
 
@@ -144,7 +144,7 @@ def named(job: Job, numbers: Array) -> str:
 
 def _below(below: Listed, length: float, unit: str) -> str:
     if not below.count:
-        return f"no row: all are proven to be {length:g} {unit} or more apart"
+        return f"no row: all are proven to be {at_least(length)} {unit} or more apart"
     rows = counted(below.count, "row is", "rows are")
     told = f"{rows} not proven to be {length:g} {unit} apart"
     listed = len(below.rows.row)
@@ -212,8 +212,10 @@ def estimate_lines(job: Job, found: Estimate) -> list[str]:
     processes = counted(found.processes, "process", "processes")
     lines = [
         *_head(job),
-        line("shards", f"{grouped(found.shards)} of {grouped(job.shard_rows)} rows"),
-        line("tried", f"{found.tried} rows, {found.row_seconds * 1e6:.3g} µs each"),
+        line(
+            "shards", f"{grouped(found.shards)} of {counted(job.shard_rows, 'row', write=grouped)}"
+        ),
+        line("tried", f"{counted(found.tried, 'row')}, {found.row_seconds * 1e6:.3g} µs each"),
         line("time", f"{scaled(found.seconds, TIMES, 's')} with {processes}"),
         line("disk", f"{scaled(found.size, SIZES, 'B')} in shards"),
     ]

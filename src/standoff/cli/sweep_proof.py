@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from standoff.checks.real_numbers import shown
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.summary import line
@@ -25,7 +26,7 @@ from standoff.sweep.proof.estimate import ProofEstimate, estimated_proof
 from standoff.sweep.proof.proof import Proof
 from standoff.sweep.proof.report import ProofReport, proof_facts
 from standoff.sweep.proof.summary import Kind, Places
-from standoff.wording import counted
+from standoff.wording import at_least, counted
 
 ASKED = "clearance="
 JSON_PLACES = 10
@@ -41,13 +42,13 @@ def clearance_of(text: str) -> float:
     """
     told = f"--prove: give the length that is to be kept, such as: --prove {ASKED}0.005"
     if not text.startswith(ASKED):
-        raise CommandError(f"{told}; got {text!r}")
+        raise CommandError(f"{told}; got {shown(text)}")
     try:
         clearance = float(text.removeprefix(ASKED))
     except ValueError:
-        raise CommandError(f"{told}; got {text!r}") from None
+        raise CommandError(f"{told}; got {shown(text)}") from None
     if not math.isfinite(clearance) or clearance < 0.0:
-        raise CommandError(f"{told}; a length is zero or above, got {text!r}")
+        raise CommandError(f"{told}; a length is zero or above, got {shown(text)}")
     return clearance
 
 
@@ -112,7 +113,7 @@ def proof_lines(report: ProofReport, folder: Path) -> list[str]:
         *(line(kind.name.lower(), _share(report, kind)) for kind in Kind),
     ]
     if math.isfinite(found.bound):
-        lines.append(line("bound", f"nowhere nearer than {found.bound:.6g} {unit}; proven"))
+        lines.append(line("bound", f"nowhere nearer than {at_least(found.bound)} {unit}; proven"))
     missed = "" if not found.uncertified else f", {grouped(found.uncertified)} not certified"
     lines.append(line("queries", f"{grouped(found.queries)}{missed}"))
     lines += _places(proof, "nearest", found.nearest.places)
@@ -150,18 +151,19 @@ def _places(proof: Proof, name: str, places: Places) -> list[str]:
         if name == "open" and not math.isfinite(distance):
             told = f"not asked, around {named(proof.job, places.numbers[k])}"
         elif name == "open":
-            told += f", {bound:.6g} {unit} proven around it"
+            told += f", {at_least(bound)} {unit} proven around it"
         lines.append(line(name if k == 0 else "", told))
     return lines
 
 
 def _estimate_lines(proof: Proof, found: ProofEstimate) -> list[str]:
     processes = counted(found.processes, "process", "processes")
+    tried = counted(found.tried, "query", "queries", grouped)
     shown = f"{100.0 * found.proven:.3g} % proven, {100.0 * found.violated:.3g} % violated"
     return [
         *_head(proof),
         line("shards", f"{found.shards}"),
-        line("tried", f"{grouped(found.tried)} queries, {found.query_seconds * 1e6:.3g} µs each"),
+        line("tried", f"{tried}, {found.query_seconds * 1e6:.3g} µs each"),
         line("after these", f"{shown} of the box"),
         line("time", f"at most {scaled(found.seconds, TIMES, 's')} with {processes}"),
     ]

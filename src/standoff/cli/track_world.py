@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.clearance.facts import report_facts
 from standoff.clearance.over_time import LeastOfAll, Walked, bounds_over, frames
-from standoff.clearance.report import Report, Wanted, at_least, no_clearance, report_on
+from standoff.clearance.report import Report, Wanted, gap_text, no_clearance, report_on
 from standoff.cli.arguments import TrackCommand
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, world_facts
@@ -18,7 +18,7 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.summary import frames_text, line, share_text, time_text
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, TrackSettings
-from standoff.wording import counted
+from standoff.wording import at_least, counted
 from standoff.world.state import WorldCounts
 
 FIRST_PAIRS = 5
@@ -141,7 +141,7 @@ def _lines(
     k = int(walked.clearance.argmin())
     sound = n - walked.uncertified
     least = [
-        f"{row.answer.distance:.6g} {unit} at {time_text(row.nearest.time)}, {_names(row)}"
+        f"{gap_text(row.answer)} {unit} at {time_text(row.nearest.time)}, {_names(row)}"
         for row in sorted(report.rows, key=lambda row: row.answer.distance)
     ]
     shown = least if verbose else least[:FIRST_PAIRS]
@@ -157,7 +157,7 @@ def _lines(
             f"{at_least(float(walked.clearance[k]))} {unit} at "
             f"{time_text(walked.times[k])}, proven for all pairs in all frames"
             if walked.clearance[k] > -np.inf
-            else f"{no_clearance(report)}, at {time_text(walked.times[k])}",
+            else f"none is proven: {no_clearance(report)}, at {time_text(walked.times[k])}",
         ),
         *(line("closest" if i == 0 else "", text) for i, text in enumerate(shown)),
         *([line("", f"and {counted(more, 'more pair')}")] if more else []),
@@ -170,7 +170,7 @@ def _lines(
         line(
             "near",
             f"{counted(near, 'pair')} within the horizon at some time, "
-            f"{total.open} pairs of pieces open at most",
+            f"{counted(total.open, 'pair')} of pieces open at most",
         ),
         line("work", f"pairs of pieces: {', '.join(work)}"),
         *(line("wrote" if i == 0 else "", str(path)) for i, path in enumerate(written)),

@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.gpu.compiler import Target, ptx_of
 from standoff.gpu.threads import KERNELS
@@ -106,7 +107,7 @@ def compiled(kernel: str, target: Target) -> tuple[str, float]:
     """
     if kernel not in KERNELS:
         raise StandoffError(
-            f"kernel = {kernel!r}: give one of {', '.join(KERNELS)}.", "kernel", kernel
+            f"kernel = {shown(kernel)}: give one of {', '.join(KERNELS)}.", "kernel", kernel
         )
     begun = time.perf_counter()
     ptx = ptx_of(*KERNELS[kernel], target)

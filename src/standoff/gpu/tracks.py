@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.gpu.compiler import check_there
 from standoff.gpu.device_arrays import empty, pair_and_options, sent
@@ -217,8 +218,8 @@ def kernel_of(tracker: Tracker) -> str:
     law = tracker.law
     if not isinstance(law, PredictorCorrector) or law.within is not None:
         raise StandoffError(
-            f"law = {law!r}: on a GPU there are frames of so.PredictorCorrector without a horizon "
-            "alone.",
+            f"law = {shown(law)}: on a GPU there are frames of so.PredictorCorrector without a "
+            "horizon alone.",
             "law",
             law,
         )

@@ -20,6 +20,7 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.checks.arrays import finite
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.points.answer import Minimum
 from standoff.points.minima import HOME, PointMinima, pose_of, twists
@@ -114,7 +115,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         curves = self.boundary.curves
         if sorted(table) != list(range(len(curves))):
             raise StandoffError(
-                f"parameters = {parameters!r}: give one for each of {len(curves)} curves.",
+                f"parameters = {shown(parameters)}: give one for each of {len(curves)} curves.",
                 "parameters",
                 parameters,
             )

@@ -176,7 +176,7 @@ class PointTracker(KeepsReadOnly):
         """
         if not isinstance(state, PointState):
             raise StandoffTypeError(
-                f"{state!r} is not a PointState: get one from tracker.start.", "state", state
+                f"{shown(state)} is not a PointState: get one from tracker.start.", "state", state
             )
         x, v = self._read(point, velocity)
         h = self.dt if dt is None else positive(dt, "dt")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.plain_data import PlainData, plain
 from standoff.read_only import KeepsReadOnly
-from standoff.wording import counted
+from standoff.wording import at_least, counted
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -222,8 +222,8 @@ class PathProof(KeepsReadOnly, PlainData):
         span = f"{self.start:.6g} to {self.end:.6g} s"
         if self.verdict is Verdict.PROVEN:
             return (
-                f"PROVEN: every pair keeps {self.clearance:.6g} at every instant from {span}; "
-                f"none comes nearer than {self.proven:.6g} ({took})"
+                f"PROVEN: every pair keeps {at_least(self.clearance)} at every instant from "
+                f"{span}; none comes nearer than {at_least(self.proven)} ({took})"
             )
         if self.verdict is Verdict.VIOLATED:
             return (
@@ -340,8 +340,8 @@ class BoxProof(KeepsReadOnly, PlainData):
         )
         if self.verdict is Verdict.PROVEN:
             return (
-                f"PROVEN: every pair keeps {self.clearance:.6g} in the whole box; none comes "
-                f"nearer than {self.proven:.6g} ({took})"
+                f"PROVEN: every pair keeps {at_least(self.clearance)} in the whole box; none comes "
+                f"nearer than {at_least(self.proven)} ({took})"
             )
         shares = (
             f"{self.free:.4%} of the box proven free, {self.violated:.4%} proven not to be, "

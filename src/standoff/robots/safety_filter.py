@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import number, positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, not_installed
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
@@ -108,7 +109,8 @@ class SafetyFilter:
             raise StandoffError("Give weights above zero, and lower limits below the upper ones.")
         if solver not in qpsolvers.available_solvers:
             raise StandoffError(
-                f"solver = {solver!r} is not installed; there are {qpsolvers.available_solvers}.",
+                f"solver = {shown(solver)} is not installed; there are "
+                f"{qpsolvers.available_solvers}.",
                 "solver",
                 solver,
             )

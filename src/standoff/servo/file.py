@@ -9,7 +9,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from standoff import parquet
-from standoff.kernels.dynamics import servo_arrays as V
 from standoff.servo.report import ServoReport
 from standoff.version import __version__
 
@@ -29,25 +28,24 @@ def write_log(report: ServoReport, facts: Mapping[str, Any], file: BinaryIO) -> 
     file : BinaryIO
     """
     log = report.log
-    turns = log[:, V.J_TURN : V.J_TURN + 9].reshape(-1, 3, 3)
+    turns = log["rotation"]
     known = np.asarray(turns.any(axis=(1, 2)))
     quaternions = np.full((len(log), 4), np.nan)
     if known.any():
         quaternions[known] = Rotation.from_matrix(turns[known]).as_quat(canonical=True)
-    handle = np.where(known[:, None], log[:, V.J_HANDLE : V.J_HANDLE + 3], np.nan)
-    columns: dict[str, Any] = {"time": log[:, V.J_CLOCK]}
+    handle = np.where(known[:, None], log["position"], np.nan)
+    columns: dict[str, Any] = {"time": log["time"]}
     columns |= {axis: handle[:, k] for k, axis in enumerate(AXES)}
     columns |= {f"q{axis}": quaternions[:, k] for k, axis in enumerate(f"{AXES}w")}
-    columns |= {f"tool.{axis}": log[:, V.J_TOOL + k] for k, axis in enumerate(AXES)}
-    columns |= {f"force.{axis}": log[:, V.J_FORCE + k] for k, axis in enumerate(AXES)}
-    columns |= {f"torque.{axis}": log[:, V.J_FORCE + 3 + k] for k, axis in enumerate(AXES)}
+    for name in ("tool", "force", "torque"):
+        columns |= {f"{name}.{axis}": log[name][:, k] for k, axis in enumerate(AXES)}
     columns |= {
-        "distance": log[:, V.J_DISTANCE],
-        "tick": log[:, V.J_TICK].astype(np.int64),
-        "lateness": log[:, V.J_LATE],
-        "work": log[:, V.J_WORK],
-        "engaged": log[:, V.J_ENGAGED] > 0.0,
-        "fault": log[:, V.J_WHY].astype(np.int64),
+        "distance": log["distance"],
+        "tick": log["tick"].astype(np.int64),
+        "lateness": log["lateness"],
+        "work": log["work"],
+        "engaged": log["engaged"] > 0.0,
+        "fault": log["fault"].astype(np.int64),
     }
     told = {"format": FORMAT, "format_version": FORMAT_VERSION, "standoff": __version__}
     parquet.write(columns, told | dict(facts), file)

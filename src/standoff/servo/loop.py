@@ -356,13 +356,14 @@ class Servo(BoundToRun):
     def _report(self) -> ServoReport:
         ended = Ended(self._why or V.STOPPED)
         state = self._state_of(self._data.copy())
+        fault = Fault.NONE if state.coupler is None else state.coupler.fault
         return ServoReport(
             ended=ended,
-            message=told(ended, int(self._tallies[V.Y_AWAY])),
+            message=told(ended, int(self._tallies[V.Y_AWAY]), fault),
             rate=self.rate,
             statistics=statistics_of(self._bins, self._tallies),
             state=state,
-            fault=Fault.NONE if state.coupler is None else state.coupler.fault,
+            fault=fault,
             notes=tuple(self._notes),
             problem=self.problem,
             log=in_order(self._log, int(self._tallies[V.Y_TICKS])),

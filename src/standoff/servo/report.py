@@ -13,8 +13,20 @@ from standoff.read_only import KeepsReadOnly
 from standoff.servo.statistics import NANO, ServoStatistics
 from standoff.simulation.device import Fault
 from standoff.simulation.system_state import SystemState
+from standoff.wording import counted
 
 Array = NDArray[np.float64]
+
+LOGGED = np.dtype(
+    [
+        *((name, np.float64) for name in ("tick", "time", "lateness", "work", "engaged", "fault")),
+        ("distance", np.float64),
+        ("position", np.float64, 3),
+        ("rotation", np.float64, (3, 3)),
+        *((name, np.float64, 3) for name in ("tool", "force", "torque")),
+    ]
+)
+"""A row of the log: the numbers of ``V.J_TICK`` to ``V.J_LOGGED``, in their order."""
 
 
 class Ended(IntEnum):
@@ -64,8 +76,12 @@ class ServoReport(KeepsReadOnly):
         What the system refused: a real-time priority, locked memory.
     problem : str
         What the device said was wrong with it.
-    log : (n, m) array
-        The last ticks, oldest first, laid out in ``standoff.kernels.dynamics.servo_arrays``.
+    log : (n,) array with named columns
+        The last ticks, oldest first, such as ``log["force"]``, (n, 3): "tick"; "time", on the clock
+        of `time.monotonic()` [s]; "lateness" and "work" [s]; "engaged", 1 or 0; "fault", a number
+        of `Fault`; "distance", the least of all pairs; "position" and "rotation" of the handle, all
+        0 before the first reading; "tool", its position; "force" and "torque" on the handle [N, N
+        m].
     """
 
     ended: Ended
@@ -79,18 +95,26 @@ class ServoReport(KeepsReadOnly):
     log: Array
 
     def __repr__(self) -> str:
-        return f"<ServoReport {self.ended.name}, {self.statistics.ticks} ticks>"
+        ticks = counted(self.statistics.ticks, "tick")
+        fault = "" if self.fault is Fault.NONE else f", fault {self.fault.name}"
+        return f"<ServoReport {self.ended.name}, {ticks}{fault}>"
 
 
-def told(ended: Ended, away: int) -> str:
-    """Return in words why a loop ended; `away` in nanoseconds."""
-    return _TOLD[ended].format(away=away / NANO) + "; no force is on the handle"
+def told(ended: Ended, away: int, fault: Fault) -> str:
+    """Return in words why a loop ended, `away` in nanoseconds, and why its coupler let go."""
+    why = _TOLD[ended].format(away=away / NANO) + "; no force is on the handle"
+    return why if fault is Fault.NONE else f"{why}. Before, the coupler let go: {fault_told(fault)}"
+
+
+def fault_told(fault: Fault) -> str:
+    """Return a fault's name, what happened, and what to do."""
+    return f"{fault.name}: {fault.advice}"
 
 
 def in_order(log: Array, ticks: int) -> Array:
-    """Return the rows of a log that goes round, oldest first, read-only."""
+    """Return the rows of a log that goes round, oldest first, with names, read-only."""
     count = len(log)
     rows = log[:ticks] if ticks <= count else np.roll(log, -(ticks % count), axis=0)
-    kept: Array = rows.copy()
+    kept: Array = rows.copy().view(LOGGED)[:, 0]
     kept.flags.writeable = False
     return kept

@@ -7,7 +7,7 @@ from typing import NamedTuple
 DEADLINE = 2_000_000
 """Evaluations of points and bounds, at most: some seconds."""
 PATCH_ALONE = (
-    "patch={patch!r}: patches are those of local minima, of solids in space; give `minima` too, up "
+    "patch={patch}: patches are those of local minima, of solids in space; give `minima` too, up "
     "to which distance."
 )
 """Why patches are refused."""

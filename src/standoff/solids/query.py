@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from standoff.checks.numbers import positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
@@ -69,7 +70,7 @@ def distance(  # noqa: PLR0913 - all but four are keywords with defaults
         None if patch is None else positive(patch, "patch"),
     )
     if asked.patch is not None and (asked.minima is None or _planar(a) or _planar(b)):
-        raise StandoffError(PATCH_ALONE.format(patch=patch), "patch", patch)
+        raise StandoffError(PATCH_ALONE.format(patch=shown(patch)), "patch", patch)
     if not (_planar(a) or _planar(b)):
         return spatial_distance(a, b, pose_a, pose_b, asked)
     return planar_distance(PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b"), pose_a, pose_b, asked)

@@ -18,7 +18,7 @@ from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.pair_plot import plot as pair_figure
 from standoff.tracking.status import BY_NUMBER
 from standoff.version import __version__
-from standoff.wording import counted, printable
+from standoff.wording import at_least, counted, printable
 
 DRAWN = 12
 """Worst rows that are drawn: a screen or two of pictures, each of some tenths of a second."""
@@ -75,7 +75,7 @@ def _grouped(number: int) -> str:
 
 
 def _length(number: float, unit: str) -> str:
-    return f"{number:.6g} {escape(unit)}".rstrip()
+    return f"{at_least(number)} {escape(unit)}".rstrip()
 
 
 def _summary(report: Report) -> str:
@@ -84,7 +84,8 @@ def _summary(report: Report) -> str:
     seed = "" if job.kind in ("grid", "file") else f", seed {job.seed}"
     ways = ", ".join(f"{_plain(p.name)} ({_plain(p.told)})" for p in job.parameters)
     lines = [
-        f"{_plain(job.subject.name)}: {_grouped(found.rows)} rows ({job.kind}{seed}).",
+        f"{_plain(job.subject.name)}: {counted(found.rows, 'row', write=_grouped)} "
+        f"({job.kind}{seed}).",
         f"From row to row change: {ways}.",
     ]
     if found.uncertified.count:
@@ -127,7 +128,7 @@ def _spread(spread: Spread, unit: str) -> list[str]:
     return [
         *(_length(spread.least, unit), str(spread.least_row)),
         *(_length(spread.most, unit), str(spread.most_row)),
-        *(_length(spread.sum / spread.count, unit), _grouped(spread.count)),
+        *(f"{spread.sum / spread.count:.6g} {escape(unit)}".rstrip(), _grouped(spread.count)),
     ]
 
 
@@ -216,7 +217,7 @@ def _rows(job: Job, rows: Rows) -> str:
     heads += ["status", *(["nearest pair"] if several else [])]
     body = []
     for k, row in enumerate(first.row.tolist()):
-        cells = [str(row), f"{first.distance[k]:.6g}", f"{first.lower_bound[k]:.6g}"]
+        cells = [str(row), f"{first.distance[k]:.6g}", at_least(first.lower_bound[k])]
         cells += [f"{number:.6g}" for number in numbers[k].tolist()]
         cells.append(BY_NUMBER[int(first.status[k])].name)
         pair = pairs[k]

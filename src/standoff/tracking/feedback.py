@@ -374,7 +374,7 @@ def checked_feedback(feedback: Any) -> Feedback:
     """Return a feedback, or raise TypeError if it is not one."""
     if isinstance(feedback, type) or not isinstance(feedback, Feedback):
         raise StandoffTypeError(
-            f"feedback = {feedback!r} is not a feedback: give one of so.feedback, such as "
+            f"feedback = {shown(feedback)} is not a feedback: give one of so.feedback, such as "
             "so.feedback.PI(500.0, 2e4).",
             "feedback",
             feedback,

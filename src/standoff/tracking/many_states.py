@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.checks.numbers import whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
@@ -81,7 +82,8 @@ class TrackerStates(KeepsReadOnly):
         for k, state in enumerate(given):
             if not isinstance(state, TrackerState):
                 raise StandoffTypeError(
-                    f"states[{k}] = {state!r} is not a TrackerState: get one from tracker.start.",
+                    f"states[{k}] = {shown(state)} is not a TrackerState: get one from "
+                    "tracker.start.",
                     "states",
                     states,
                 )

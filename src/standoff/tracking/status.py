@@ -82,8 +82,9 @@ _ADVICE = {
         "pair with its poses."
     ),
     Status.NOT_CERTIFIED: (
-        "No start reached a gap within the tolerance: the distance is an upper bound and the "
-        "lower bound holds; loosen the tolerance, or report the pair with its poses."
+        "No search brought the distance and its lower bound within the tolerance of each other: "
+        "the distance is an upper bound and the lower bound holds; loosen the tolerance, or report "
+        "the pair with its poses."
     ),
     Status.LOCAL: (
         "The bodies overlap, and moving B by depth * normal separates them; a shorter move in "
@@ -95,8 +96,8 @@ _ADVICE = {
         "direction needs less than 0.999 of it."
     ),
     Status.DEADLINE: (
-        "The evaluations allowed for this step ran out: the lower bound holds and the next step "
-        "continues from here; allow more evaluations, or shorten the step."
+        "The evaluations allowed ran out before the bounds met; both bounds hold: allow more "
+        "(`deadline`), or use the bounds as they are. A tracker's next step continues from here."
     ),
     Status.NOT_RESTARTED: (
         "The local minimum that is followed was lost, or another may be less, and the law has "
@@ -108,8 +109,9 @@ _ADVICE = {
         "distance was asked for; for one, raise `within`."
     ),
     Status.WITHIN: (
-        "The distance is proven to lie between the lower and the upper bound, which are farther "
-        "apart than the tolerance: allow more evaluations, or use the bounds as they are."
+        "The distance is proven to lie between the lower and the upper bound, but of some pieces "
+        "of the surfaces the search could not bring these as near to each other as the tolerance: "
+        "use the bounds as they are, loosen the tolerance, or report the pair with its poses."
     ),
     Status.CONTINUUM: (
         "The distance is proven, and a whole set of pairs of points has it: the witness points are "

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from standoff.checks.real_numbers import shown
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -96,7 +98,7 @@ class StepsMany:
         this: Any = self
         if not isinstance(states, TrackerStates):
             raise StandoffTypeError(
-                f"{states!r} is not TrackerStates: get them from tracker.start_many.",
+                f"{shown(states)} is not TrackerStates: get them from tracker.start_many.",
                 "states",
                 states,
             )

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from standoff.bodies.body import Body
 from standoff.checks.numbers import positive
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries.preparing import prepare
@@ -380,7 +381,7 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         """
         if not isinstance(state, TrackerState):
             raise StandoffTypeError(
-                f"{state!r} is not a TrackerState: get one from tracker.start.", "state", state
+                f"{shown(state)} is not a TrackerState: get one from tracker.start.", "state", state
             )
         for name, own, other in zip("AB", (self.a, self.b), state.proximity.bodies, strict=True):
             if own is not other and not same_body(own, other):

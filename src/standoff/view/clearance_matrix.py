@@ -9,10 +9,9 @@ from collections.abc import Mapping, Sequence
 from html import escape
 from typing import NamedTuple
 
-from standoff.clearance.report import at_least
 from standoff.clearance.verdicts import Verdict, verdict_of
 from standoff.view.gap_colours import FAR, OF_VERDICT, STOPS, css, gap_colours, writing_on
-from standoff.wording import printable
+from standoff.wording import at_least, printable
 from standoff.world import WorldAnswer
 
 NamePair = tuple[str, str]
@@ -57,7 +56,7 @@ class Cell(NamedTuple):
         """In the cell."""
         if self.far:
             return f"≥{at_least(self.gap, 2)}"
-        return "touch" if self.verdict is Verdict.TOUCHING else f"{self.gap:.2g}"
+        return "touch" if self.verdict is Verdict.TOUCHING else at_least(self.gap, 2)
 
     def told(self, unit: str) -> str:
         """When it is pointed at."""

@@ -15,6 +15,7 @@ from standoff.motion import Fixed, Pose
 from standoff.motion.moving import moving
 from standoff.scene import Scene
 from standoff.view.tolerances import MOST_COURSE
+from standoff.wording import counted
 from standoff.world import World, WorldAnswer
 from standoff.world.poses import check_names
 
@@ -90,7 +91,7 @@ def moving_world(world: World, given: Any, duration: float | None = None) -> Mov
     TypeError, ValueError
         If there are none of these.
     """
-    title = f"{len(world)} bodies"
+    title = counted(len(world), "body", "bodies")
     if duration is None:
         return MovingWorld(world, title, "", np.zeros(1), lambda t: given)
     end = positive(duration, "duration")
@@ -101,8 +102,8 @@ def moving_world(world: World, given: Any, duration: float | None = None) -> Mov
     count = round(end / world.dt) + 1
     if not 2 <= count <= MOST_COURSE:
         raise StandoffError(
-            f"{end:g} s in frames of {world.dt:g} s are {count} frames, and a page shows 2 to "
-            f"{MOST_COURSE}: change the duration, or the world's dt.",
+            f"{end:g} s in frames of {world.dt:g} s are {counted(count, 'frame')}, and a page "
+            f"shows 2 to {MOST_COURSE}: change the duration, or the world's dt.",
             "duration",
             duration,
         )

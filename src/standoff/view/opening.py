@@ -129,7 +129,7 @@ def page_of(
     for name, value in (asked or MinimaAsked())._asdict().items():
         if value is not None:
             raise StandoffError(
-                f"{name} = {value!r}: this page is of no pair with a solid; leave it out.",
+                f"{name} = {shown(value)}: this page is of no pair with a solid; leave it out.",
                 name,
                 value,
             )

@@ -11,6 +11,7 @@ from standoff.tracking import Status
 from standoff.view.nodes import COLOURS as BODY_COLOURS
 from standoff.view.shown import Shown
 from standoff.view.tolerances import SAID_TO_TOUCH
+from standoff.wording import at_least, at_most
 
 DIGITS = 9
 """Significant digits of distance and lower bound in the table."""
@@ -35,6 +36,16 @@ TABLE = (
 def length(value: float, unit: str, digits: int = DIGITS) -> str:
     """Return a length as the page writes it."""
     return f"{value:.{digits}g} {unit}".rstrip() if np.isfinite(value) else "not known"
+
+
+def lower(bound: float, unit: str, digits: int = DIGITS) -> str:
+    """Return a lower bound as the page writes it, never more than it is."""
+    return f"{at_least(bound, digits)} {unit}".rstrip() if np.isfinite(bound) else "not known"
+
+
+def upper(bound: float, unit: str, digits: int = DIGITS) -> str:
+    """Return an upper bound as the page writes it, never less than it is."""
+    return f"{at_most(bound, digits)} {unit}".rstrip() if np.isfinite(bound) else "not known"
 
 
 class Known(Protocol):
@@ -66,13 +77,13 @@ def verdict(answer: Known, unit: str, size: float) -> str:
     """
     distance, bound, status = answer.distance, answer.lower_bound, answer.status
     if status is Status.FAR:
-        return f"at least {length(bound, unit, SHORT)} apart, beyond the horizon"
+        return f"at least {lower(bound, unit, SHORT)} apart, beyond the horizon"
     if status is Status.OVERLAPPING or not np.isfinite(distance):
         return "overlap, depth not known" if status.penetrating else "distance not known"
     proven = status.certified or status.penetrating
     off = max(abs(distance), abs(bound))
     if proven and off <= SAID_TO_TOUCH * size:
-        return f"touching, to within {length(off, unit, 2)}" if off else "touching"
+        return f"touching, to within {upper(off, unit, 2)}" if off else "touching"
     if status.penetrating:
         how = "proven least" if status is Status.GLOBAL else "perhaps not the least"
         return f"overlap, depth {length(-distance, unit, SHORT)}, {how}"
@@ -80,11 +91,11 @@ def verdict(answer: Known, unit: str, size: float) -> str:
         return f"apart, distance {length(distance, unit, SHORT)}, proven"
     why = _UNPROVEN[status]
     if distance < 0.0 and np.isfinite(bound):
-        return f"depth at most {length(-bound, unit, SHORT)}: {why}"
+        return f"depth at most {upper(-bound, unit, SHORT)}: {why}"
     if not np.isfinite(bound):
-        return f"distance at most {length(distance, unit, SHORT)}: {why}"
-    low = length(bound, "", SHORT)
-    return f"distance between {low} and {length(distance, unit, SHORT)}: {why}"
+        return f"distance at most {upper(distance, unit, SHORT)}: {why}"
+    low = lower(bound, "", SHORT)
+    return f"distance between {low} and {upper(distance, unit, SHORT)}: {why}"
 
 
 _UNPROVEN = {
@@ -155,4 +166,4 @@ def readout(
 def _bound(answer: Shown, unit: str, size: float) -> str:
     """The lower bound; of one that is all but 0 the digits are roundoff."""
     bound = answer.lower_bound
-    return length(bound, unit, DIGITS if abs(bound) > SAID_TO_TOUCH * size else 2)
+    return lower(bound, unit, DIGITS if abs(bound) > SAID_TO_TOUCH * size else 2)

@@ -17,6 +17,7 @@ from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_state import Energy, SystemState
+from standoff.wording import counted
 
 Array = NDArray[np.float64]
 
@@ -71,7 +72,7 @@ def simulated(what: SystemRun | tuple[Operator, SystemState]) -> Simulated:
     system = run.system if run is not None else what[0].system  # type: ignore[index]
     own = [body.body.name for body in system.bodies]
     names = [f"{name} {k}" if own.count(name) > 1 else name for k, name in enumerate(own)]
-    return Simulated(what, f"{len(names)} bodies", "", tuple(names))
+    return Simulated(what, counted(len(names), "body", "bodies"), "", tuple(names))
 
 
 class Instant(NamedTuple):

@@ -10,7 +10,18 @@ from standoff.solids.answer import NearestPair, SolidProximity
 from standoff.tracking import Status
 from standoff.view.live_solids import known_of
 from standoff.view.nodes import COLOURS as BODY_COLOURS
-from standoff.view.readout import BODY, COLOURS, MARK, ROW, SHORT, TABLE, length, verdict
+from standoff.view.readout import (
+    BODY,
+    COLOURS,
+    MARK,
+    ROW,
+    SHORT,
+    TABLE,
+    length,
+    lower,
+    upper,
+    verdict,
+)
 from standoff.view.solid_nodes import OVERLAP_COLOUR
 from standoff.view.tolerances import SAID_TO_TOUCH
 from standoff.wording import counted
@@ -55,7 +66,7 @@ def solid_verdict(answer: SolidProximity, names: tuple[str, str], unit: str, siz
         return _overlap(answer, unit)
     if status is Status.TOUCHING:
         off = max(abs(distance), abs(answer.lower_bound))
-        told = f", to within {length(off, unit, 2)}" if np.isfinite(off) and off else ""
+        told = f", to within {upper(off, unit, 2)}" if np.isfinite(off) and off else ""
         return f"touching{told}"
     inner, outer = names if "A" in (answer.inside, answer.cavity) else names[::-1]
     where = f", {inner} in a cavity of {outer}" if answer.cavity else ""
@@ -68,9 +79,9 @@ def solid_verdict(answer: SolidProximity, names: tuple[str, str], unit: str, siz
         if not np.isfinite(distance):
             return "distance not known"
         if not np.isfinite(answer.lower_bound):
-            return f"distance at most {length(distance, unit, SHORT)}: not proven closer"
-        low = length(answer.lower_bound, "", SHORT)
-        return f"distance between {low} and {length(distance, unit, SHORT)}: not proven closer"
+            return f"distance at most {upper(distance, unit, SHORT)}: not proven closer"
+        low = lower(answer.lower_bound, "", SHORT)
+        return f"distance between {low} and {upper(distance, unit, SHORT)}: not proven closer"
     return verdict(answer, unit, size) + where
 
 
@@ -86,7 +97,7 @@ def _overlap(answer: SolidProximity, unit: str) -> str:
         return f"overlap in {len(places)} places, the deepest {deepest}"
     if answer.overlap is None or not answer.overlap.depth > 0.0:
         return "overlap, depth not known"
-    return f"overlap, no shift shorter than {length(answer.overlap.depth, unit, SHORT)} parts them"
+    return f"overlap, no shift shorter than {lower(answer.overlap.depth, unit, SHORT)} parts them"
 
 
 def solid_beside(answer: SolidProximity, unit: str, size: float) -> str:
@@ -167,14 +178,14 @@ def _depth(answer: SolidProximity, unit: str) -> str:
     if places:
         return length(-places[0].distance, unit)
     assert answer.overlap is not None
-    return f"at least {length(answer.overlap.depth, unit)}"
+    return f"at least {lower(answer.overlap.depth, unit)}"
 
 
 def _bound(answer: SolidProximity, unit: str) -> str:
     """The lower bound; of an overlap that has none that of its deepest place."""
     bound = known_of(answer).lower_bound
     own = np.isfinite(answer.lower_bound) or not np.isfinite(bound)
-    return length(bound, unit) if own else f"{length(bound, unit)}, of this place"
+    return lower(bound, unit) if own else f"{lower(bound, unit)}, of this place"
 
 
 def _vector(answer: SolidProximity) -> str:

@@ -6,10 +6,9 @@ from html import escape
 
 import numpy as np
 
-from standoff.clearance.report import at_least
-from standoff.view.readout import COLOURS, MARK, ROW, TABLE, length, verdict
+from standoff.view.readout import COLOURS, MARK, ROW, TABLE, length, lower, verdict
 from standoff.view.solid_readout import solid_verdict
-from standoff.wording import counted, printable, short_name
+from standoff.wording import at_least, counted, printable, short_name
 from standoff.world import PairAnswer, WorldAnswer
 from standoff.world.solid_answer import SolidPairAnswer
 
@@ -56,7 +55,7 @@ def world_readout(answer: WorldAnswer, unit: str, size: float, pairs: int | None
         rows = [
             ("closest", "closest", named(closest)),
             (MARK.format(COLOURS[0]) + "distance", "distance", length(closest.distance, unit)),
-            ("lower bound", "bound", length(closest.lower_bound, unit)),
+            ("lower bound", "bound", lower(closest.lower_bound, unit)),
         ]
     clearance = f"{at_least(answer.clearance)} {unit}".rstrip()
     rows.append((MARK.format(COLOURS[1]) + "clearance", "clearance", f"{clearance}, all pairs"))

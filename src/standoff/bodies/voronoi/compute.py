@@ -62,7 +62,7 @@ def voronoi_regions(
         return planar_regions(body, reach, tolerance)
     if tolerance is not None:
         raise StandoffError(
-            f"tolerance = {tolerance!r} is for planar bodies; {body!r} is spatial.",
+            f"tolerance = {shown(tolerance)} is for planar bodies; {body!r} is spatial.",
             "tolerance",
             tolerance,
         )

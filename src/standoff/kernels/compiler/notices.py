@@ -18,7 +18,7 @@ QUIET = "STANDOFF_QUIET"
 
 
 class Work(NamedTuple):
-    """What entries are needed for, and about how long one core compiles them, s."""
+    """What entries are needed for, and about how much processor time compiling them takes, s."""
 
     what: str
     seconds: int
@@ -30,26 +30,35 @@ class Work(NamedTuple):
 
 
 WORK = {
-    "bodies": Work("the geometry of bodies", 10, 10, 17),
-    "query": Work("queries of bodies that are apart", 20, 25, 2),
-    "contact": Work("queries in contact and penetration", 12, 35, 3),
-    "frames": Work("single frames", 2, 3, 5),
+    "bodies": Work("the geometry of bodies", 15, 15, 17),
+    "query": Work("queries of bodies that are apart", 24, 30, 2),
+    "contact": Work("queries in contact and penetration", 20, 40, 3),
+    "frames": Work("single frames", 3, 4, 5),
     "law": Work("frames of the predictor-corrector", 12, 35, 1),
     "smooth": Work("frames on faces of this pair's kinds", 3, 5, 0),
-    "runs": Work("runs of many frames", 1, 2, 2),
-    "paper": Work("frames of the paper's law", 8, 25, 2),
-    "derivatives": Work("derivatives by the poses", 3, 25, 3),
-    "patches": Work("patches of bodies", 5, 25, 2),
-    "simulation": Work("simulations of bodies", 30, 60, 2),
+    "runs": Work("runs of many frames", 5, 6, 2),
+    "paper": Work("frames of the paper's law", 15, 30, 2),
+    "derivatives": Work("derivatives by the poses", 7, 25, 3),
+    "patches": Work("patches of bodies", 8, 25, 2),
+    "simulation": Work("simulations of bodies", 50, 80, 2),
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 25, 60, 3),
-    "world": Work("worlds of many bodies", 5, 45, 10),
-    "solids": Work("solids in space", 36, 50, 20),
+    "world": Work("worlds of many bodies", 8, 45, 10),
+    "solids": Work("solids in space", 50, 65, 20),
     "planar": Work("planar solids", 15, 20, 4),
 }
 
-ALL_SECONDS = 180
-"""About how long one core compiles all of them, s."""
+ALL_SECONDS = 245
+"""About how much processor time compiling all of them takes, s."""
+
+BUSY = 1.3
+"""Seconds by the clock for a second of a processor, from which on a machine is called busy."""
+
+PACE_SHARE = 0.01
+"""Share of a processor below which a pace is not told."""
+
+SEEN = 1.0
+"""Processor time from which on its pace is told by what was seen of it, s."""
 
 PERIOD = 10.0
 """Longest time without a line while somebody waits, s."""
@@ -67,6 +76,8 @@ _said: set[str] = set()
 _begun: Counter[str] = Counter()
 _place: ContextVar[tuple[int, int] | None] = ContextVar("place", default=None)
 _spoken = 0.0
+_taken = [0.0, 0.0]
+"""By the clock and of a processor, s: what compiling took so far."""
 _lines: list[Callable[[], str]] = []
 
 
@@ -82,6 +93,26 @@ def say(text: str) -> None:
     if not quiet() and sys.stderr is not None:
         with suppress(OSError, ValueError):  # nobody reads it: the work goes on
             print(f"standoff: {text}", file=sys.stderr, flush=True)
+
+
+def pace() -> float:
+    """Return how many seconds by the clock a second of a processor takes, 1 or more: as it was
+    while this process compiled, and before that by the machine's load."""
+    clock, spent = _taken
+    if spent >= SEEN:
+        return max(1.0, clock / spent)
+    try:
+        load = os.getloadavg()[0]
+    except (AttributeError, OSError):  # not on Windows, or not known
+        return 1.0
+    return max(1.0, (load + 1.0) / (os.cpu_count() or 1))
+
+
+def takes(seconds: float) -> str:
+    """Return in words how long work of so many seconds of processor time takes here."""
+    slower = pace()
+    busy = f", {seconds * slower:.0f} s or so as busy as this machine is" if slower >= BUSY else ""
+    return f"about {seconds} s of processor time{busy}"
 
 
 @contextmanager
@@ -134,13 +165,26 @@ class _Part:
     name: str
     place: str
     started: float
+    spent: float
     watching: ExitStack
     told: bool = False
     watched: bool = False
 
     def still(self) -> str:
-        seconds = time.perf_counter() - self.started
-        return f"still compiling {self.name}{self.place}: {seconds:.0f} s so far ..."
+        clock, spent = self.taken()
+        told = f"still compiling {self.name}{self.place}: {clock:.0f} s so far"
+        slower = clock / max(spent, clock * PACE_SHARE)
+        if slower < BUSY:
+            return f"{told} ..."
+        seconds = WORK[self.work].seconds
+        return (
+            f"{told}, {spent:.0f} s of them on a processor, which others use too; at this pace "
+            f"{seconds} s of it take {seconds * slower:.0f} s ..."
+        )
+
+    def taken(self) -> tuple[float, float]:
+        """By the clock, and of a processor [s]."""
+        return time.perf_counter() - self.started, time.process_time() - self.spent
 
 
 _current: _Part | None = None
@@ -154,15 +198,20 @@ def waiting(work: str, name: str) -> Iterator[None]:
     global _current
     _begun[work] += 1
     with ExitStack() as watching:
-        part = _Part(work, name, _place_of(work), time.perf_counter(), watching)
+        began = time.perf_counter(), time.process_time()
+        part = _Part(work, name, _place_of(work), *began, watching)
         _current = part
         try:
             yield
         finally:
             _current = None
-    seconds = time.perf_counter() - part.started
-    if part.told and seconds > 1.0:
-        say(f"{name} compiled in {seconds:.0f} s")
+    if not part.watched:  # it was found on disk
+        return
+    clock, spent = part.taken()
+    _taken[:] = _taken[0] + clock, _taken[1] + spent
+    if part.told and clock > 1.0:
+        busy = f", {spent:.0f} s of them on a processor" if clock >= BUSY * spent else ""
+        say(f"{name} compiled in {clock:.0f} s{busy}")
 
 
 def _place_of(work: str) -> str:
@@ -191,8 +240,8 @@ def compiling(kept: bool) -> None:
         _said.add(part.work)
         part.told = True
         say(
-            f"compiling the kernels for {work.what} ({part.name}{part.place}): at most about "
-            f"{seconds} s of one core{', kept for next time' if kept else ''}{hint} ..."
+            f"compiling the kernels for {work.what} ({part.name}{part.place}): {takes(seconds)}"
+            f"{', kept for next time' if kept else ''}{hint} ..."
         )
     if not part.watched:
         part.watched = True

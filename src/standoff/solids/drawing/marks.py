@@ -15,6 +15,7 @@ from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.tolerances import FARTHER, FLAT_BOX
 from standoff.tracking.status import Status
+from standoff.wording import counted
 
 try:
     from matplotlib.artist import Artist
@@ -110,7 +111,7 @@ def marks_legend(answer: SolidProximity, size: float, unit: str) -> list[Artist]
     if answer.open:
         shown = len(answer.open)
         count = f"{shown}" if answer.counts.open <= shown else f"{shown} of {answer.counts.open}"
-        label = f"open: {count} pairs of pieces, in boxes"
+        label = f"open: {counted(count, 'pair')} of pieces, in boxes"
         handles.append(Patch(facecolor="none", edgecolor=OPEN_COLOUR, label=label))
     return handles
 

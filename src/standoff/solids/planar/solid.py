@@ -146,7 +146,7 @@ class PlanarSolid(KeepsReadOnly, Plotted):
             Not a body.
         """
         if not isinstance(body, Body):
-            raise StandoffTypeError(f"{body!r} is no Body: give a planar one.", "body", body)
+            raise StandoffTypeError(f"{shown(body)} is no Body: give a planar one.", "body", body)
         return cls.from_loops(loops_of_body(body), name=name or body.name)
 
     @classmethod

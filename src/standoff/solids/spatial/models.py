@@ -7,6 +7,7 @@ from typing import Any
 
 from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.half_space import HalfSpace
@@ -19,7 +20,7 @@ def as_model(given: Any) -> SolidModel:
         return given
     if isinstance(given, Boundary | Body):
         return _made_once(given)
-    raise StandoffError(f"{given!r} is no Solid, Boundary or Body.", "solid", given)
+    raise StandoffError(f"{shown(given)} is no Solid, Boundary or Body.", "solid", given)
 
 
 @lru_cache(maxsize=64)

@@ -23,6 +23,7 @@ from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.ties import starts
 from standoff.solids.spatial.tolerances import MEETING, MEETING_SLACKS, PROVEN_SHARE, SHORT_WAY
+from standoff.wording import counted
 
 # Evaluations for one pair of leaves, at most.
 BUDGET = 20_000
@@ -31,6 +32,13 @@ WORK = 2048
 # Steps of the way from one point of a face to another.
 ON_THE_WAY = 16
 Key = tuple[int, int]
+
+NONE_PROVEN = "no self-intersection: proven for the whole boundary"
+NONE_OUTSIDE = (
+    "no self-intersection: proven, except close to edges and vertices, where none was looked for"
+)
+NONE_FOUND = "no self-intersection was found, but there is no proof that there is none"
+"""Said of a boundary that meets itself nowhere, as far as that is known."""
 
 
 class SelfIntersection(NamedTuple):
@@ -104,13 +112,13 @@ class SelfIntersections:
         """What was found, in sentences."""
         after = f" {unit}" if unit else ""
         if self.proven_none:
-            return ["proven not to meet itself"]
+            return [NONE_PROVEN]
         found = [told(place, self.tolerance, after) for place in self.places]
         if self.undecided:
-            found.append(f"whether {self.undecided} pairs of pieces of faces meet is not decided")
+            pairs = counted(self.undecided, "pair")
+            found.append(f"undecided: {pairs} of pieces of faces, which may or may not meet")
         if not self.places:
-            how = "proven" if self.none_outside_joints else "found"
-            found.insert(0, f"not {how} to meet itself")
+            found.insert(0, NONE_OUTSIDE if self.none_outside_joints else NONE_FOUND)
         return found
 
 

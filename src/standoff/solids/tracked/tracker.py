@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive, whole_number
+from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries.preparing import prepare_tracked_solids
 from standoff.motion import Pose
@@ -91,7 +92,7 @@ class SolidTracker(KeepsReadOnly):
         self.minima = None if minima is None else positive(minima, "minima")
         self.patch = None if patch is None else positive(patch, "patch")
         if self.patch is not None and self.minima is None:
-            raise StandoffError(PATCH_ALONE.format(patch=patch), "patch", patch)
+            raise StandoffError(PATCH_ALONE.format(patch=shown(patch)), "patch", patch)
         asked = Asked(None, self.tolerance, self.minima, self.deadline, self.patch)
         self._asks = Asks(self.a, self.b, asked)
         prepare_tracked_solids()
@@ -274,7 +275,7 @@ class SolidTracker(KeepsReadOnly):
     def _check(self, state: SolidState) -> None:
         if not isinstance(state, SolidState):
             raise StandoffTypeError(
-                f"{state!r} is no SolidState: get one from tracker.start.", "state", state
+                f"{shown(state)} is no SolidState: get one from tracker.start.", "state", state
             )
         for name, own, other in zip("AB", (self.a, self.b), state._pair, strict=True):
             if own is not other:

@@ -16,6 +16,7 @@ from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.nearest import drawn_answer, names_of, nearest_of, rows_of
 from standoff.sweep.subjects.shapes import digest_of_shape
 from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.wording import counted
 from standoff.world import World
 from standoff.world.answer import WorldAnswer
 
@@ -48,7 +49,7 @@ class SceneWorld(Subject):
 
     @property
     def name(self) -> str:
-        return f"a world of {len(self.world)} bodies"
+        return f"a world of {counted(len(self.world), 'body', 'bodies')}"
 
     @property
     def movable(self) -> tuple[str, ...]:
