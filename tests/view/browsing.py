@@ -72,14 +72,14 @@ def drag(
     """Drag from a point of the world, `grip`, along a vector until something has moved. A browser
     that is short of time may not have drawn a handle yet when the button goes down: tried again."""
     mouse = tab.page.mouse
-    for _ in range(4):
+    for tries in range(10):
         start = grip()
         mouse.move(*on_screen(page, start))
-        tab.page.wait_for_timeout(500)
+        tab.page.wait_for_timeout(500 * (1 + tries))
         mouse.down()
         for part in np.linspace(0.0, 1.0, 8):
             mouse.move(*on_screen(page, start + part * way))
-        held = waiting.happens(moved, 5.0)
+        held = waiting.happens(moved, 5.0 * (1 + tries))
         if held:
             tab.page.wait_for_timeout(500)
         if release or not held:
