@@ -317,7 +317,7 @@ BESIDE_FEATURE = 1e-9
 SAME_BEND = 1e-9
 # Of the body's size: how far inside both faces, and off an edge's ends, curvatures are compared.
 # Above the roundoff of a knot that the edge lies on; it changes a curvature by less than SAME_BEND.
-INSIDE = 1e-11
+BEND_INSIDE = 1e-11
 # Of the span: cores that are nearer than this touch, and the normal may not be unique.
 TOUCHING_CORES = 1e-12
 # Radians: normals nearer to each other than this are one. Normal cones narrower than this, as of

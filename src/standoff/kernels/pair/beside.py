@@ -26,7 +26,7 @@ from standoff.kernels.body.features import (
 from standoff.kernels.body.trimming import HIT_COEDGE, on_face, walk_face
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.pair.switching import end_direction, onto_face, steepest_in_sector
-from standoff.kernels.tolerances import BESIDE_FEATURE, INSIDE, SAME_BEND
+from standoff.kernels.tolerances import BEND_INSIDE, BESIDE_FEATURE, SAME_BEND
 from standoff.kernels.values import NO_CHART, Side
 
 
@@ -62,11 +62,11 @@ def bend(jet, n, along, across):
 
 @kernel
 def inner_parameter(ints, reals, edge, t):
-    """An edge's parameter, INSIDE of the size off its ends."""
+    """An edge's parameter, BEND_INSIDE of the size off its ends."""
     e = edge_record(ints, edge)
     o = ints[e + L.EDGE_REALS]
     tangent = edge_jet(ints, reals, edge, t)[1]
-    step = INSIDE * reals[L.SIZE] / sqrt(dot(tangent, tangent))
+    step = BEND_INSIDE * reals[L.SIZE] / sqrt(dot(tangent, tangent))
     if ints[e + L.EDGE_FLAGS] & L.CLOSED:
         return t
     return min(max(t, reals[o + L.EDGE_T0] + step), reals[o + L.EDGE_T1] - step)
@@ -74,7 +74,7 @@ def inner_parameter(ints, reals, edge, t):
 
 @kernel
 def inner_jet(ints, reals, coedge, t):
-    """The jet of a coedge's face beside its point at t, INSIDE of the size off it.
+    """The jet of a coedge's face beside its point at t, BEND_INSIDE of the size off it.
 
     At the edge itself patches that were one, cut at a knot, have the jet of the same span.
     """
@@ -84,7 +84,7 @@ def inner_jet(ints, reals, coedge, t):
     du, dv = -ints[c + L.COEDGE_SIDE] * tv, ints[c + L.COEDGE_SIDE] * tu
     jet = chart_jet(ints, reals, ints[c + L.COEDGE_CHART], u, v)
     way = axpy(du, jet[1], scale(dv, jet[2]))
-    step = INSIDE * reals[L.SIZE] / sqrt(dot(way, way))
+    step = BEND_INSIDE * reals[L.SIZE] / sqrt(dot(way, way))
     return chart_jet(ints, reals, ints[c + L.COEDGE_CHART], u + step * du, v + step * dv)
 
 
