@@ -14,6 +14,7 @@ import standoff as so
 from standoff import long_loops
 from standoff.long_loops import told
 from standoff.scene import load_scene
+from waiting import LONG
 
 BOXES = "".join(f'[bodies.b{k}]\nshape = "box"\nsize = [1, 2, {1 + k}]\n' for k in range(20_000))
 SCENE = f'version = 1\n{BOXES}[placements.b1]\nposition = [9, 0, 0]\n[pair]\na = "b0"\nb = "b1"\n'
@@ -82,7 +83,7 @@ def test_an_interrupt_ends_the_reading_of_many_bodies(tmp_path: Path) -> None:
                 break
         running.send_signal(signal.SIGINT)
         try:
-            out, err = running.communicate(timeout=60.0)
+            out, err = running.communicate(timeout=LONG)
         finally:
             running.kill()  # else one that goes on would be waited for
     assert running.returncode == 130

@@ -20,6 +20,7 @@ import pytest
 import standoff as so
 from standoff.devices import Trace
 from standoff.servo import Servo
+from waiting import LONG
 
 SCENE = Path(__file__).parents[2] / "examples" / "simulation" / "hand-on-lens.toml"
 Standoff = Callable[..., Any]
@@ -95,7 +96,7 @@ def test_a_signal_ends_it_cleanly(kind: signal.Signals) -> None:
     assert any("engaged" in text for text in running.stderr)
     time.sleep(0.1)
     running.send_signal(kind)
-    out, err = running.communicate(timeout=60)
+    out, err = running.communicate(timeout=LONG)
     facts = json.loads(out)
     assert running.returncode == 0 or facts["ended"] == "STALLED", err
     assert "no force is on the handle" in facts["message"]

@@ -18,6 +18,7 @@ from standoff.devices.inverse3_messages import Cursor, cursor_of, device_ids, fo
 from standoff.errors import DeviceError, StandoffTypeError
 from standoff.servo import Servo
 from standoff.simulation import Fault, Wrench
+from waiting import until
 
 pytest.importorskip("websockets", reason="the extra 'devices' is not installed")
 
@@ -38,19 +39,9 @@ def service() -> Iterator[FakeService]:
     made.close()
 
 
-def until(there: object, seconds: float = 10.0) -> bool:
-    assert callable(there)
-    end = time.monotonic() + seconds
-    while not there():
-        if time.monotonic() > end:
-            return False
-        time.sleep(1e-3)
-    return True
-
-
 def engaged(servo: Servo, service: FakeService) -> None:
     """Engage until the service is sent a force: a late frame of a busy machine ends it."""
-    assert until(lambda: servo.ready)
+    until(lambda: servo.ready)
 
     def forced() -> bool:
         if not servo.latest().engaged:
@@ -58,7 +49,7 @@ def engaged(servo: Servo, service: FakeService) -> None:
             time.sleep(2e-3)
         return bool(service.forces and any(service.forces[-1]))
 
-    assert until(forced)
+    until(forced)
 
 
 def test_messages_are_those_that_are_documented() -> None:
@@ -108,10 +99,10 @@ def test_a_hand_s_force_comes_and_ends(service: FakeService) -> None:
         # the cursor is a centimetre off the ball, which the force pulls to
         assert handle is None or 0.005 < np.hypot(*handle.p[:2]) < 0.02
         servo.disengage()
-        assert until(lambda: not any(service.forces[-1]))
+        until(lambda: not any(service.forces[-1]))
         engaged(servo, service)
     # sent before the connection closed, and read by the service in its own time
-    assert until(lambda: not any(service.forces[-1]))
+    until(lambda: not any(service.forces[-1]))
     assert (service.wrong, service.profiles) == (0, ["standoff"])
 
 
@@ -120,8 +111,8 @@ def test_a_service_that_dies_ends_the_force(service: FakeService) -> None:
     with Servo(device_soak.held_ball(2e-3), device=device, max_age=0.2) as servo:
         engaged(servo, service)
         service.mangle = hang_up
-        assert until(lambda: servo.problem)
-        assert until(lambda: not servo.latest().engaged)
+        until(lambda: servo.problem)
+        until(lambda: not servo.latest().engaged)
         assert servo.latest().fault in (Fault.MISSING, Fault.LATE)
         assert not servo.latest().wrench.force.any()
         servo.engage()  # the device is gone: it lets go again
@@ -148,8 +139,8 @@ def test_a_bad_frame_ends_the_force(
             return make(text, rng)
 
         service.mangle = once
-        assert until(lambda: not servo.latest().engaged)
-        assert until(lambda: not any(service.forces[-1]))
+        until(lambda: not servo.latest().engaged)
+        until(lambda: not any(service.forces[-1]))
         time.sleep(0.02)
         assert service.forced_after == 0
         assert not any(service.forces[-1])
@@ -164,25 +155,26 @@ def test_a_flood_ends_the_force_and_holds_no_stop_up(service: FakeService, answe
         engaged(servo, service)
         flood = Flood(service, answered=answered)
         service.mangle = flood
-        assert until(lambda: flood.sent > 1000)
-        assert until(lambda: not servo.latest().engaged)
+        until(lambda: flood.sent > 1000)
+        until(lambda: not servo.latest().engaged)
         if answered:  # and the device is told so while the flood goes on
-            assert until(lambda: service.zeros > 10)
+            until(lambda: service.zeros > 10)
         started = time.monotonic()
         servo.stop()
         seconds = time.monotonic() - started
         flood.over.set()
-    assert seconds < 0.5
+    assert seconds < 5.0  # an unanswered flood lasts for 20 s
     # of what it does not hear it knows nothing
-    assert not answered or until(lambda: not any(service.forces[-1]))
+    if answered:
+        until(lambda: not any(service.forces[-1]))
 
 
 def test_of_a_flood_no_more_is_read_than_comes_in_a_period() -> None:
     class Endless:
-        """A connection that has another frame at any time, for two seconds."""
+        """A connection that has another frame at any time, for a minute."""
 
         def __init__(self) -> None:
-            self.end, self.forces = time.monotonic() + 2.0, 0
+            self.end, self.forces = time.monotonic() + 60.0, 0
 
         def send(self, message: str) -> None:
             self.forces += 1
@@ -208,7 +200,7 @@ def test_of_a_flood_no_more_is_read_than_comes_in_a_period() -> None:
     started = time.monotonic()
     for _ in range(5):
         told.exchange()
-    assert time.monotonic() - started < 1.0
+    assert time.monotonic() - started < 30.0
     assert socket.forces == 5
     assert device.refused > 5
 

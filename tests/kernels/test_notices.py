@@ -15,6 +15,7 @@ import pytest
 
 from standoff.kernels.compiler import modules, notices
 from standoff.kernels.entries.preparing import every_entry
+from waiting import until
 
 SEGMENT = "import standoff as so; so.shapes.segment(1.0); so.shapes.segment(2.0)"
 OTHER = "from standoff.kernels.entries.queries import pcurve_jet as entry; entry.prepare()"
@@ -108,11 +109,16 @@ def heard(
     return lambda: capsys.readouterr().err.splitlines()
 
 
-def compiled(work: str, name: str = "start", seconds: float = 0.0, kept: bool = True) -> None:
-    """What an entry does that is not on disk."""
+def compiled(
+    work: str, name: str = "start", seconds: float = 0.0, kept: bool = True, told: bool = False
+) -> None:
+    """What an entry does that is not on disk; `told`: until a line more is said."""
     with notices.waiting(work, name):
         notices.compiling(kept)
+        said = notices._spoken
         time.sleep(seconds)
+        if told:
+            until(lambda: notices._spoken > said)
 
 
 def test_who_tells_of_it_himself_is_not_told_twice(heard: Callable[[], list[str]]) -> None:
@@ -202,7 +208,7 @@ def test_a_long_wait_is_told_to_go_on(
     monkeypatch.setenv(notices.QUIET, quiet)
     with notices.alive(lambda: "the wait that this one is part of"), notices.told_elsewhere():
         for work in notices.parts(["query", "contact"]):
-            compiled(work, work, 0.5)
+            compiled(work, work, 0.5, told=quiet == "0")
     lines = heard()
     told = ["query, part 1 of 2", "contact, part 2 of 2"] if quiet == "0" else []
     assert list(dict.fromkeys(line.rpartition(":")[0] for line in lines)) == [
@@ -231,8 +237,7 @@ def test_a_watch_goes_on_where_nobody_reads(
     monkeypatch.setattr(sys, "stderr", closed)
     asked: list[bool] = []
     with notices.alive(lambda: str(asked.append(True))):
-        time.sleep(0.4)
-    assert len(asked) > 1
+        until(lambda: len(asked) > 1)
 
 
 def test_the_works_add_up_to_the_whole() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -36,13 +35,3 @@ def coupled(
     ball = sim.RigidBody.free(made(so.shapes.sphere(0.01)), mass=0.2, pose=knocking(0.0))
     system = sim.System([lens, ball], contact, gravity=[0, 0, 0], coupler=coupler, tool=1)
     return sim.Operator(system, period)
-
-
-def until(there: Callable[[], object], seconds: float = 10.0) -> bool:
-    """Wait until something holds, or so long."""
-    end = time.monotonic() + seconds
-    while not there():
-        if time.monotonic() > end:
-            return False
-        time.sleep(1e-3)
-    return True

@@ -25,6 +25,7 @@ from standoff.sweep.job import Job
 from standoff.sweep.reading import load_job
 from standoff.sweep.run import run_sweep
 from sweep.conftest import JOB, SCENE, TOP, Make
+from waiting import LONG, happens
 
 MANY = JOB.replace("rows = 700", "rows = 60")
 """50 shards of some milliseconds each."""
@@ -137,10 +138,7 @@ def test_killed_at_any_moment_it_ends_with_the_same_bytes(
             for number in rng.sample(range(job.shards), 40):
                 shard_file(folder, number).unlink()
             (folder / "report.json").unlink()
-        deadline = time.monotonic() + 60.0
-        while not gone(process.pid) and time.monotonic() < deadline:
-            time.sleep(0.01)
-        if not gone(process.pid):
+        if not happens(lambda process=process: gone(process.pid), LONG):
             os.killpg(process.pid, signal.SIGKILL)
             pytest.fail("workers outlive the process that was killed")
     assert early > 0
@@ -320,7 +318,7 @@ def test_an_interrupt_of_a_terminal_ends_all_processes(
         assert process.poll() is None, process.communicate()[0]
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of them
-    said = process.communicate(timeout=60)[0]
+    said = process.communicate(timeout=LONG)[0]
     assert b"KeyboardInterrupt" in said
     assert process.returncode != 0
     missing = folders.missing_shards(job, folder, pytest.fail)

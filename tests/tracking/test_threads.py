@@ -1,11 +1,13 @@
 """Rows shared between threads: each is done once, and what goes wrong in a thread is told."""
 
+import signal
 import threading
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from standoff.tracking import threads
 from standoff.tracking.threads import in_parts
 
 
@@ -43,3 +45,39 @@ def test_an_error_in_any_part_is_told(bad, workers):
 
     with pytest.raises(ValueError, match=f"row {bad}"):
         in_parts(work, 100, workers)
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+@pytest.mark.parametrize("seconds", [1e-9, 1e-4, 1e-2])
+def test_no_call_is_long(workers, seconds, monkeypatch):
+    """Of rows that take so long each, by a clock that only they move."""
+    clock, calls, lock = [0.0], [], threading.Lock()
+    monkeypatch.setattr("standoff.tracking.threads.time.monotonic", lambda: clock[0])
+
+    def work(first, end):
+        with lock:
+            calls.append((first, end))
+            clock[0] += seconds * (end - first)
+
+    in_parts(work, 50_000, workers)
+    assert sorted(k for first, end in calls for k in range(first, end)) == list(range(50_000))
+    longest = max(end - first for first, end in calls)
+    assert longest <= max(threads.FIRST_ROWS, 1.01 * threads.HEARD_WITHIN / seconds)
+    assert len(calls) <= 8 * threads.PARTS * workers + 2.0 * clock[0] / threads.HEARD_WITHIN
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_an_interrupt_is_heard_between_two_calls(workers):
+    done, met, waited = [], threading.Barrier(workers, timeout=60.0), threading.local()
+
+    def work(first, end):
+        done.append(end - first)
+        if not getattr(waited, "once", False):  # each worker has a part
+            waited.once = True
+            met.wait()
+        if threading.current_thread() is threading.main_thread():
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        in_parts(work, 1_000_000, workers)
+    assert sum(done) < 1_000_000

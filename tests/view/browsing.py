@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import time
+import threading
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+import waiting
 
-def until(holds: Callable[[], bool], seconds: float = 15.0) -> None:
-    assert happens(holds, seconds), "it did not come about"
+# A page's thread holds it while it does one thing: `conftest` sees to it.
+ONE_THING = threading.RLock()
 
 
-def happens(holds: Callable[[], bool], seconds: float) -> bool:
-    """Does something come about within some time?"""
-    end = time.monotonic() + seconds
-    while not holds():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.05)
-    return True
+def until(holds: Callable[[], object]) -> None:
+    """Wait until something holds, and what the page's thread is amid when it does is done."""
+    waiting.until(holds)
+    with ONE_THING:
+        pass
 
 
 def on_screen(page: Any, point: Any) -> tuple[float, float]:
@@ -74,14 +72,14 @@ def drag(
     """Drag from a point of the world, `grip`, along a vector until something has moved. A browser
     that is short of time may not have drawn a handle yet when the button goes down: tried again."""
     mouse = tab.page.mouse
-    for _ in range(4):
+    for tries in range(10):
         start = grip()
         mouse.move(*on_screen(page, start))
-        tab.page.wait_for_timeout(500)
+        tab.page.wait_for_timeout(500 * (1 + tries))
         mouse.down()
         for part in np.linspace(0.0, 1.0, 8):
             mouse.move(*on_screen(page, start + part * way))
-        held = happens(moved, 5.0)
+        held = waiting.happens(moved, 5.0 * (1 + tries))
         if held:
             tab.page.wait_for_timeout(500)
         if release or not held:

@@ -9,6 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from browsing import ONE_THING
+
+from waiting import LONG
 
 ROOT = Path(__file__).parents[2]
 SHOTS = ROOT / "build" / "view"
@@ -39,6 +42,7 @@ class Tab:
     def __init__(self, browser: Any, width: int, height: int, scale: float = 1.0) -> None:
         size = {"width": width, "height": height}
         self.page = browser.new_page(viewport=size, device_scale_factor=scale)
+        self.page.set_default_timeout(1000.0 * LONG)
         self.requests: list[str] = []
         self.failed: list[str] = []
         self.errors: list[str] = []
@@ -54,7 +58,7 @@ class Tab:
 
     def shown(self, name: str) -> str:
         """A value of the panel's table."""
-        found: str = self.page.locator(f"[data-of={name}]").text_content(timeout=20_000)
+        found: str = self.page.locator(f"[data-of={name}]").text_content()
         return found
 
     def number(self, name: str) -> float:
@@ -92,6 +96,22 @@ def tab(chromium: Any) -> Iterator[Any]:
     yield make
     for each in opened:
         each.page.close()
+
+
+@pytest.fixture(autouse=True)
+def one_thing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages do one thing at a time, which `until` waits for."""
+    try:
+        served = import_module("standoff.view.served").ServedPage
+    except ModuleNotFoundError:  # without the extra `view` there are no pages
+        return
+    attempt = served._attempt
+
+    def alone(page: Any, task: Any) -> None:
+        with ONE_THING:
+            attempt(page, task)
+
+    monkeypatch.setattr(served, "_attempt", alone)
 
 
 @pytest.fixture

@@ -126,7 +126,7 @@ def test_a_run_is_played_saved_and_opened_from_its_file(
     opened_file = tab(420, 300)
     opened_file.page.goto(file.as_uri())
     clock = opened_file.page.locator("input").first
-    first = clock.input_value(timeout=20_000)
+    first = clock.input_value()
     until(lambda: clock.input_value() != first)
     opened_file.page.wait_for_timeout(300)
     until(lambda: colours(opened_file.shot("saved-run")) > 100)

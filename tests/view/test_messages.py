@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from browsing import until
 
 from standoff.scene import load_scene
+from waiting import LONG
 
 pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
 
@@ -39,13 +41,6 @@ CAMERA = {
 def page() -> Iterator[Page]:
     with Page(load_scene(EXAMPLES / "lenses.toml")) as page:
         yield page
-
-
-def until(holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 5.0
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.01)
 
 
 def drag(page: Page, **given: Any) -> dict[str, Any]:
@@ -108,9 +103,9 @@ def test_a_value_of_another_kind_is_refused_and_changes_nothing(page: Page, name
         send(connection, BAD[name](page))
         assert closing_code(connection) == 1008
         assert "the message" in str(connection.close_reason)
+    until(lambda: len(guard.refused) == min(noted + 1, 100))
     time.sleep(0.1)  # two looks of the page's thread
     assert state(page) == before
-    assert len(guard.refused) == min(noted + 1, 100)
     assert page._thread.is_alive()
 
 
@@ -167,14 +162,17 @@ def test_any_fault_of_a_task_is_told_once_and_survived(
 
 
 def test_a_fault_at_every_look_stops_the_hand(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    failed = []
+
     def fails(*given: Any) -> None:
+        failed.append(given)
         raise TypeError("of nobody's")
 
     poses = page.stage.pair.poses
     with monkeypatch.context() as broken:
         broken.setattr(page.stage.pair, "move", fails)
         page._asked.put(lambda: page.stage._drag(0, [1.0, 0, 0, 0], [0.0, 0.0, 9.0]))
-        time.sleep(0.2)
+        until(lambda: bool(failed))
     until(lambda: page.stage._wanted is page.stage.pair.poses)
     assert page.stage.pair.poses is poses
 
@@ -188,7 +186,7 @@ def test_an_end_that_is_asked_for_ends_it(kind: type[BaseException]) -> None:
     with Page(load_scene(EXAMPLES / "lenses.toml")) as page:
         page._asked.put(ends)
         page.wait()
-        page._thread.join(5.0)
+        page._thread.join(LONG)
         assert not page._thread.is_alive()
 
 

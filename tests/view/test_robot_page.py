@@ -172,6 +172,6 @@ def test_a_proof_in_a_browser(chromium: Any, tab: Callable[..., Any]) -> None:
         desk.page.wait_for_timeout(1500)
         desk.shot("robot")
         desk.page.get_by_text("joints", exact=True).click()
-        desk.page.get_by_text("j7", exact=True).wait_for(timeout=20_000)
+        desk.page.get_by_text("j7", exact=True).wait_for()
         assert desk.foreign(page.address) == []
         assert (desk.failed, desk.errors) == ([], [])

@@ -461,7 +461,7 @@ def test_a_solid_dragged_in_a_browser(scene: Path, chromium: Any, tab: Callable[
         desk.page.get_by_role("tab", name="Minima").click()
         key = stage.pair.answer.minima[0].key
         listed = desk.page.locator(f"[data-of=minima-list] tr[data-key='{key}']")
-        assert f"{distance:.6g}" in listed.text_content(timeout=20_000)
+        assert f"{distance:.6g}" in listed.text_content()
         desk.shot("solids")
         assert desk.foreign(page.address) == []
         assert (desk.failed, desk.errors) == ([], [])

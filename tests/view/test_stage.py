@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
+from browsing import until
 
 import standoff as so
 from standoff.errors import StandoffError
@@ -29,13 +28,6 @@ from standoff.view.page import Page
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HALF = np.array([0.5, 0.4, 0.3])
-
-
-def until(holds: Callable[[], bool]) -> None:
-    end = time.monotonic() + 60.0  # kernels may have to be compiled
-    while not holds():
-        assert time.monotonic() < end, "it did not come about"
-        time.sleep(0.02)
 
 
 def test_a_pair_that_is_moved_answers_as_a_cold_query_and_tells_its_switches(

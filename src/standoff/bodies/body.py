@@ -18,11 +18,10 @@ from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.tolerances import MAX_SPREAD
-from standoff.bodies.topology import Edge, Face, check_parts, parts_of
+from standoff.bodies.topology import Edge, Face, check_parts, extent_of, parts_of
 from standoff.checks.arrays import finite
-from standoff.checks.numbers import LEAST, magnitude, magnitude_or_zero
+from standoff.checks.numbers import magnitude, magnitude_or_zero
 from standoff.checks.real_numbers import shape_of
-from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 
 if TYPE_CHECKING:
@@ -102,11 +101,7 @@ class Body(Boundary):
         check_parts(points, edges, faces, dimension)
         spots = [points] + [edge_points(e) for e in edges]
         cloud = np.concatenate(spots)
-        rough = float(np.linalg.norm(np.ptp(cloud, axis=0))) if len(cloud) else 1.0
-        if len(cloud) > 1 and rough < LEAST:
-            raise BodyError(
-                f"The body's extent is {rough:.3g}: below {LEAST:g}; choose a smaller unit."
-            )
+        rough = extent_of(cloud, "the body") if len(cloud) > 1 else float(not len(cloud))
         tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
         if convexity_tolerance is not None:
             convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")

@@ -27,9 +27,9 @@ from standoff.bodies.tolerances import (
     VOLUME_END,
     coordinate_roundoff,
 )
-from standoff.bodies.topology import Edge, Face, check_parts, parts_of
+from standoff.bodies.topology import Edge, Face, check_parts, extent_of, parts_of
 from standoff.checks.arrays import finite
-from standoff.checks.numbers import LEAST, magnitude
+from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
@@ -55,11 +55,7 @@ def joined_parts(
     check_parts(points, edges, faces, 3)
     _check_bounded(faces)
     cloud = np.concatenate([points, *(edge_points(e) for e in edges), _charts_points(faces)])
-    rough = float(np.linalg.norm(np.ptp(cloud, axis=0)))
-    if rough < LEAST:
-        raise BodyError(
-            f"The boundary's extent is {rough:.3g}: below {LEAST:g}; choose a smaller unit."
-        )
+    rough = extent_of(cloud, "the boundary")
     tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
     return assemble(points, edges, faces, 3, rough, tolerance, _checked_senses(senses, faces))
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.checks.arrays import finite
-from standoff.checks.numbers import is_whole
+from standoff.checks.numbers import LEAST, is_whole
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve, Line
@@ -126,6 +126,23 @@ def check_parts(
             f"{len(edges)} edges and no face: in space only one straight edge is a body (a "
             "segment); for a planar loop give dimension=2."
         )
+
+
+def extent_of(points: Any, what: str) -> float:
+    """The diagonal of the box around points, length, which is not below `LEAST`: squares are taken
+    of it.
+
+    Raises
+    ------
+    BodyError
+        It is.
+    """
+    extent = float(np.linalg.norm(np.ptp(points, axis=0)))
+    if not extent >= LEAST:
+        raise BodyError(
+            f"The extent of {what} is {extent:.3g}: below {LEAST:g}; choose a smaller unit."
+        )
+    return extent
 
 
 def parts_of(parts: Any, name: str) -> tuple[Any, ...]:

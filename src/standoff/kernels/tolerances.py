@@ -323,6 +323,12 @@ TURNING_NORMAL = 3e-9
 SQUARE_AXIS = 1e-9
 # Radians, and of the body's size: a witness point this near another feature lies on both.
 BESIDE_FEATURE = 1e-9
+# Of the greater curvature, at least of 1 / the size: curvatures this near to each other are one.
+# The same surface from both sides of a seam has 1e-12; a Hessian right to this has nine digits.
+SAME_BEND = 1e-9
+# Of the body's size: how far inside both faces, and off an edge's ends, curvatures are compared.
+# Above the roundoff of a knot that the edge lies on; it changes a curvature by less than SAME_BEND.
+BEND_INSIDE = 1e-11
 # Of the span: cores that are nearer than this touch, and the normal may not be unique.
 TOUCHING_CORES = 1e-12
 # Radians: normals nearer to each other than this are one. Normal cones narrower than this, as of

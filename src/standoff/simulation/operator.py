@@ -379,7 +379,7 @@ class Operator(KeepsReadOnly):
             raise StandoffTypeError(
                 f"state is {shown(state)}: get one from operator.start.", "state", state
             )
-        if state.system is not self.system:
+        if state.system.key != self.system.key:
             raise StandoffError(
                 "The state belongs to another system: get one from operator.start.", "state", state
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import uuid
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, combinations
@@ -67,6 +68,8 @@ class System(KeepsReadOnly):
     gravity : (3,) array
     coupler : VirtualCoupler or None
     tool : int or None
+    key : str
+        Of this system and of its copies and pickles, whose states it takes; no other has it.
 
     Raises
     ------
@@ -86,6 +89,7 @@ class System(KeepsReadOnly):
     models: tuple[SolidModel | None, ...]
     coupler: VirtualCoupler | None
     tool: int | None
+    key: str
 
     def __init__(
         self,
@@ -151,6 +155,7 @@ class System(KeepsReadOnly):
         pairs: tuple[tuple[int, int], ...],
     ) -> None:
         """Keep the bodies, which of them meet, and how."""
+        object.__setattr__(self, "key", uuid.uuid4().hex)
         object.__setattr__(self, "bodies", bodies)
         object.__setattr__(self, "pairs", pairs)
         if not isinstance(contact, HuntCrossley | list | tuple):

@@ -39,7 +39,8 @@ class Derivatives(NamedTuple):
     Attributes
     ----------
     smoothness : Smoothness
-        ONE_SIDED: a witness point lies where two features meet. The gradient holds on all sides,
+        ONE_SIDED: a witness point lies where two features meet, and the curvature jumps: a seam
+        over which the surface or the edge goes on as one is none. The gradient holds on all sides,
         the rest as long as the features stay those of the answer. PARTIAL: the normal is unique,
         but the witness points are not (flat and line contact): the gradient's components by
         translation, and by turns that move all of them alike; nan in its others and in the other

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from typing import Any
 
-from standoff.errors import StandoffTypeError
+from standoff.errors import FormulaError, StandoffTypeError
 from standoff.geometry.formulas.expressions import sympy_module
 
 # Common subexpressions are named r0, r1, ...
 SHARED = "r"
+# Bits: products of a factored form's numbers stay below 2 to this. Those of fractions with many
+# digits, brought to one denominator, do not; the rest up to 2^1024 is for the variables.
+MOST_BITS = 900
+# Decimal digits to which a constant such as sqrt(2) is computed before it is rounded to float64.
+DIGITS = 40
+# How a number that float64 cannot represent is written: the nearest one, or an interval about it.
+NEAREST, ENCLOSED = "{}", "near({})"
+# Infinity as a literal.
+INFINITE = "1e999"
 
 
 def jet_expressions(formula: Sequence[Any], variables: tuple[str, ...]) -> list[Any]:
@@ -31,17 +41,31 @@ def shorter(expression: Any) -> Any:
     """The shorter of an expression and the same with common factors taken out."""
     sympy = sympy_module()
     factored = sympy.factor_terms(expression)
-    return factored if factored.count_ops() < expression.count_ops() else expression
+    if factored.count_ops() < expression.count_ops() and bits_of(factored) <= MOST_BITS:
+        return factored
+    return expression
+
+
+def bits_of(e: Any) -> float:
+    """Of an expression's program: log2 of the greatest product of its numbers, or its inverse."""
+    if e.is_Rational:
+        return float(max(abs(e.p).bit_length(), e.q.bit_length())) if e else 0.0
+    parts = [bits_of(a) for a in e.args]
+    if e.is_Pow and e.exp.is_Rational:
+        return parts[0] * max(1.0, abs(float(e.exp)))
+    if not e.is_Mul:
+        return max(parts, default=0.0)
+    below = [b for a, b in zip(e.args, parts, strict=True) if a.is_Pow and a.exp.is_negative]
+    return max(sum(below), sum(parts) - sum(below))
 
 
 class Writer:
     """Python text of expressions with +, -, *, /, ** (integer), power() and named functions.
 
-    near : how a number that float64 cannot represent is written: "{}" for the nearest one,
-        "near({})" for intervals, which must contain it.
+    near : NEAREST, or ENCLOSED for intervals, which contain even numbers beyond float64
     """
 
-    def __init__(self, near: str = "{}") -> None:
+    def __init__(self, near: str = NEAREST) -> None:
         self.near = near
 
     def body(self, expressions: Sequence[Any]) -> tuple[list[str], list[str]]:
@@ -56,7 +80,12 @@ class Writer:
         sympy = sympy_module()
         if e.is_Symbol:
             return str(e.name)
-        if e.is_Rational or e is sympy.pi or e is sympy.E:
+        if (
+            e.is_Rational
+            or e is sympy.pi
+            or e is sympy.E
+            or (e.is_number and bits_of(e) > MOST_BITS)
+        ):
             return self.number(e)
         if e.is_Add:
             return "(" + " + ".join(self.code(a) for a in e.args) + ")"
@@ -71,10 +100,18 @@ class Writer:
         raise StandoffTypeError(f"No code for {type(e).__name__}: {e}")
 
     def number(self, e: Any) -> str:
-        text = repr(float(e))
-        if not (e.is_Rational and sympy_module().Rational(float(e)) == e):
+        value = float(e if e.is_Rational else e.evalf(DIGITS))
+        if e != 0 and not sys.float_info.min <= abs(value) <= sys.float_info.max:
+            if self.near == NEAREST:
+                raise FormulaError(
+                    f"A formula, or a derivative of it, has the number {e.evalf(6)}, beyond "
+                    "float64: choose another unit, or another scale of its variables."
+                )
+            return self.near.format(repr(value).replace("inf", INFINITE))
+        text = repr(value)
+        if not (e.is_Rational and sympy_module().Rational(value) == e):
             return self.near.format(text)
-        return f"({text})" if e < 0 else text
+        return f"({text})" if value < 0.0 else text
 
     def product(self, e: Any) -> str:
         above, below = [], []

@@ -29,7 +29,7 @@ from standoff.kernels.compiler.decorators import (
     stack_matrix,
     stack_reals,
 )
-from standoff.kernels.pair.beside import beside_another
+from standoff.kernels.pair.beside import beside_another, off_seams
 from standoff.kernels.pair.contact_newton import (
     contact_scales,
     scaled_jacobian,
@@ -45,7 +45,7 @@ from standoff.kernels.tolerances import (
     SQUARE_AXIS,
     TURNING_NORMAL,
 )
-from standoff.kernels.values import ORIGIN, Place, Pose, Vector, moved, side_of
+from standoff.kernels.values import ORIGIN, Place, Pose, Vector, moved, side_of, with_side
 
 # What derivatives are written, one after the other, each by rows.
 GRADIENT, NORMAL_JACOBIAN, POINT_JACOBIAN_A, POINT_JACOBIAN_B, HESSIAN = 0, 12, 48, 84, 120
@@ -302,6 +302,8 @@ def differentiate(pair, Ra, pose, place, n, d, everything, to):
     """
     factor = Factor(stack_matrix(), ints_on_stack(N_ORDER), stack_reals())
     turn = Pose(Ra, ORIGIN)
+    place = with_side(place, 0, off_seams(pair.ints_a, pair.reals_a, side_of(place, 0)))
+    place = with_side(place, 1, off_seams(pair.ints_b, pair.reals_b, side_of(place, 1)))
     found = at_optimum(pair, pose, turn, place, n, d, factor)
     if found.kind == UNDETERMINED or found.kind == NOT_AT_REST:
         return found.kind

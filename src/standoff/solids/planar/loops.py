@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.topology import parts_of
+from standoff.bodies.topology import extent_of, parts_of
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve
@@ -45,12 +45,12 @@ def ends_of(curve: Curve) -> tuple[Array, Array]:
     return curve.point(curve.first)[:2], curve.point(curve.last)[:2]
 
 
-def size_of(curves: Sequence[Curve]) -> float:
-    """The diagonal of the box around some points of each curve, length."""
+def size_of(curves: Sequence[Curve], what: str = "the loops") -> float:
+    """The diagonal of the box around some points of each curve, length, as long as it may be."""
     at = np.array(
         [c.point(t) for c in curves for t in np.linspace(c.first, c.last, 9)], dtype=np.float64
     )
-    return float(np.linalg.norm(np.ptp(at, axis=0)))
+    return extent_of(at, what)
 
 
 def read_loop(curves: Any, where: str, join: float | None = None) -> Loop:
@@ -59,7 +59,7 @@ def read_loop(curves: Any, where: str, join: float | None = None) -> Loop:
     Raises
     ------
     BodyError
-        No curves, one out of z = 0 or of no length, ends that do not meet.
+        No curves, one out of z = 0 or of no length, too small a loop, ends that do not meet.
     TypeError
         Not a sequence of curves.
     """
@@ -69,7 +69,7 @@ def read_loop(curves: Any, where: str, join: float | None = None) -> Loop:
             raise StandoffTypeError(f"Curve {k} of {where} is {shown(curve)}: give a Curve.")
     if not found:
         raise BodyError(f"{where} has no curves: give at least one.", "loops", curves)
-    size = size_of(found)
+    size = size_of(found, where)
     for k, curve in enumerate(found):
         _check_flat(curve, f"Curve {k} of {where}", size)
     return joined(tuple(found), where, JOINED * size if join is None else join)
@@ -79,7 +79,7 @@ def _check_flat(curve: Curve, what: str, size: float) -> None:
     points = np.array([curve.point(t) for t in np.linspace(curve.first, curve.last, 17)])
     if np.abs(points[:, 2]).max() > IN_PLANE * max(size, float(np.abs(points).max())):
         raise BodyError(f"{what} leaves the plane z = 0, at {points[0]}: give curves in it.")
-    if size > 0.0 and np.linalg.norm(np.ptp(points, axis=0)) <= JOINED * size:
+    if np.linalg.norm(np.ptp(points, axis=0)) <= JOINED * size:
         raise BodyError(
             f"{what} has no length, at {points[0, :2]}: it is shorter than {JOINED:g} of the "
             "loop; leave it out and let its neighbours meet."

@@ -14,6 +14,7 @@ from standoff.bodies.proofs.formulas.symbolic import (
     TooLargeError,
     cross,
     dot,
+    scale_of,
 )
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.expressions import sympy_module
@@ -111,7 +112,9 @@ def _reduced(ring: Ring, parts: tuple[Fraction, Fraction, Any]) -> CurvatureForm
         common = p if common == 0 else common.gcd(p)
     c = ring.fraction(common, below)
     free, hidden = ring.without_replaced([p / common for p in raised])
-    c = c * Fraction(ring, hidden, ring.one)
+    scale = scale_of(free)
+    free = [p / scale for p in free]
+    c = c * Fraction(ring, hidden * scale, ring.one)
     direction = [Fraction(ring, p, ring.one) for p in free]
     normal = tuple(ring.written(p) for p in free)
     # a sum of squares has good bounds; its terms multiplied out only where few are left

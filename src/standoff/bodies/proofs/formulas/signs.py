@@ -80,7 +80,7 @@ def widest(boxes: Boxes, slopes: list[Interval], size: Array) -> Any:
 def proven_sign(expression: Any, variables: tuple[str, ...], domain: Sequence[float]) -> int:
     """+1 (or -1): nowhere below (above) zero; 0: not proven."""
     if expression.is_number:
-        return int(np.sign(float(expression)))
+        return int(sympy_module().sign(expression.evalf()))  # float64 may not hold it
     bounds = Bounds([expression], variables)
     size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
     boxes = grid(domain, FIRST_GRID)

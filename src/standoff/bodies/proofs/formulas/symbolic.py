@@ -18,6 +18,8 @@ from standoff.geometry.formulas.expressions import flint_module, sympy_module
 # Terms of a polynomial that is still multiplied, and still factored: some tenths of a second.
 MOST_TERMS = 4000
 MOST_TERMS_FACTORED = 600
+# log2 of a polynomial's greatest coefficient: beyond, the squares in curvature leave float64.
+LONG_BITS = 200
 
 
 class TooLargeError(Exception):
@@ -191,8 +193,28 @@ class Ring:
             constant, parts = polynomial.factor_squarefree()
         else:
             constant, parts = polynomial.factor()
-        found = [(sympy.Rational(int(constant.p), int(constant.q)), 1)]
-        return found + [(self.written(p), int(m)) for p, m in parts]
+        found = []
+        for p, m in parts:
+            scale = scale_of([p])
+            constant = constant * scale ** int(m)
+            found.append((self.written(p / scale), int(m)))
+        return [(sympy.Rational(int(constant.p), int(constant.q)), 1), *found]
+
+
+def scale_of(polynomials: Sequence[Any]) -> Any:
+    """A power of two to divide polynomials by whose coefficients are too long for float64.
+
+    1 where they are not: it would only make the program longer.
+    """
+    bits = max(
+        (
+            abs(int(c.p)).bit_length() - int(c.q).bit_length()
+            for p in polynomials
+            for c in p.coeffs()
+        ),
+        default=0,
+    )
+    return flint_module().fmpq(2) ** (bits if abs(bits) > LONG_BITS else 0)
 
 
 def canonical(e: Any) -> Any:
