@@ -146,8 +146,7 @@ def _closed(chart: Chart, collapsed: Sequence[Coedge]) -> bool:
     """Is a face all of a surface between two collapsed sides that go once around it, such as a
     sphere by longitude and latitude, but for holes?"""
     around = [abs(c.pcurve.point(c.last)[0] - c.pcurve.point(c.first)[0]) for c in collapsed]
-    whole = sum(round(turn / (2.0 * np.pi)) for turn in around)
-    return bool(chart.surface.periodic) and whole == 2
+    return bool(chart.surface.periodic) and round(sum(around) / (2.0 * np.pi)) == 2
 
 
 def _loop(chart: Chart, entries: tuple[int, ...]) -> Loop:

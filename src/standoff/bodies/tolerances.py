@@ -34,6 +34,13 @@ PIECE_ROUNDOFF: Final = 1e-15
 """A parameter belongs to a piece of a trimming curve whose end it passes by this (relative to 1 +
 the parameter): the roundoff of ends that were computed in two ways."""
 
+PERIOD_ROUNDOFF: Final = 1e-12
+"""Radians by which trimming curves may leave their period: the roundoff of where they are cut."""
+
+SMALLEST_PART: Final = 1e-8
+"""A trimming curve is not divided beyond this fraction of it to prove that it is in its period: the
+hull of a part that begins square to the angle leaves it by the square of its length."""
+
 CHART_RIM: Final = 1e-3
 """A chart sees a point whose depth (cosine from its centre) is above this."""
 
