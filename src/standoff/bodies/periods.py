@@ -99,7 +99,9 @@ def _start(coedges: Sequence[Coedge], ranges: Sequence[tuple[float, float]]) -> 
     """Where the period begins: amid the widest range of angles without a trimming curve, rims not
     counted; where there is none, at the end of a curve where the fewest others have to be cut."""
     own = [k for k, c in enumerate(coedges) if not is_rim(c)]
-    spans = sorted((low % PERIOD, low % PERIOD + high - low) for low, high in (ranges[k] for k in own))
+    spans = sorted(
+        (low % PERIOD, low % PERIOD + high - low) for low, high in (ranges[k] for k in own)
+    )
     reach, widest = spans[0][1], (0.0, 0.0)
     for low, high in [*spans[1:], (spans[0][0] + PERIOD, 0.0)]:
         widest = max(widest, (low - reach, 0.5 * (low + reach)))

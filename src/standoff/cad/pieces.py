@@ -194,9 +194,7 @@ class _Maker:
         apexes = []
         if on.surface.part_of is None:
             collapsed = [e for e in uses if BRep_Tool.Degenerated_s(e)]
-            apexes = [
-                self._met(self._apex(e, face, on, over), made, trims) for e in collapsed
-            ]
+            apexes = [self._met(self._apex(e, face, on, over), made, trims) for e in collapsed]
             if not made and not apexes:
                 raise Refused(f"a {on.kind} without an edge")
         loop = tuple((number, way) for number, _, way, _ in made)
@@ -231,7 +229,6 @@ class _Maker:
         lo, hi = sorted(ends[:, 1 - across].tolist())
         side = ("u", "v")[across] + ("0" if middle[across] > level else "1")
         return Apex(self.vertex(_ends(edge)[0]), level, lo, hi, side)
-
 
     def _met(self, apex: Apex, made: Sequence[Any], trims: Sequence[Pcurve | None]) -> Apex:
         """A collapsed side that ends where the trimming curves at its vertex do."""
