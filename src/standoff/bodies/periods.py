@@ -99,17 +99,16 @@ def _start(coedges: Sequence[Coedge], ranges: Sequence[tuple[float, float]]) -> 
     """Where the period begins: amid the widest range of angles without a trimming curve, rims not
     counted; where there is none, at the end of a curve where the fewest others have to be cut."""
     own = [k for k, c in enumerate(coedges) if not is_rim(c)]
-    spans = sorted(
-        (low % PERIOD, low % PERIOD + high - low) for low, high in (ranges[k] for k in own)
-    )
+    low, high = (np.array([ranges[k][end] for k in own]) for end in (0, 1))
+    spans = sorted(zip(low % PERIOD, low % PERIOD + high - low, strict=True))
     reach, widest = spans[0][1], (0.0, 0.0)
-    for low, high in [*spans[1:], (spans[0][0] + PERIOD, 0.0)]:
-        widest = max(widest, (low - reach, 0.5 * (low + reach)))
-        reach = max(reach, high)
+    for start, end in [*spans[1:], (spans[0][0] + PERIOD, 0.0)]:
+        widest = max(widest, (start - reach, 0.5 * (start + reach)))
+        reach = max(reach, end)
     if widest[0] > PERIOD_ROUNDOFF:
-        return widest[1]
+        return float(widest[1])
     ends = [c.pcurve.point(t)[0] for c in (coedges[k] for k in own) for t in (c.first, c.last)]
-    low, high = np.array([ranges[k] for k in own]).T + [[PERIOD_ROUNDOFF], [-PERIOD_ROUNDOFF]]
+    low, high = low + PERIOD_ROUNDOFF, high - PERIOD_ROUNDOFF
     cut = [int((np.ceil((low - u) / PERIOD) < np.ceil((high - u) / PERIOD)).sum()) for u in ends]
     return float(ends[int(np.argmin(cut))])
 

@@ -155,6 +155,18 @@ def far_out(reals, o, u, v):
 
 
 @uncontracted
+def to_limit(limit, u, v, du, dv):
+    """How much of a step fits within |u|, |v| <= limit, at most 1."""
+    best = 1.0
+    if limit < inf:
+        for k in range(2):
+            a, da = (u, du) if k == 0 else (v, dv)
+            if da != 0.0:
+                best = min(best, max(((limit if da > 0.0 else -limit) - a) / da, 0.0))
+    return best
+
+
+@uncontracted
 def walk_face(ints, reals, chart, u, v, du, dv):
     """(s, hit, index, t): how much of the step fits on the face, s <= 1, and what it hits."""
     r = chart_record(ints, chart)
@@ -164,14 +176,9 @@ def walk_face(ints, reals, chart, u, v, du, dv):
         return best, hit, index, where
     u = in_period(ints, reals, r, u)
     turn = next_period(ints, reals, r, u + du)
-    limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
-    if limit < inf:
-        for k in range(2):
-            a, da = (u, du) if k == 0 else (v, dv)
-            if da != 0.0:
-                s = max(((limit if da > 0.0 else -limit) - a) / da, 0.0)
-                if s < best:
-                    best, hit = s, HIT_LIMIT
+    best = to_limit(reals[ints[r + L.CHART_REALS] + L.LIMIT], u, v, du, dv)
+    if best < 1.0:
+        hit = HIT_LIMIT
     # the nearest crossings behind: the last one inward where the start is on the face
     left, entered, left_at, left_t = -inf, -inf, -1, 0.0
     for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
