@@ -133,6 +133,10 @@ SAME_VERTEX: Final = 1e-10
 """Vertices of the core nearer to each other than this (fraction of its size) are one, where more
 than three planes meet."""
 
+SAME_CORNER: Final = 1e-12
+"""Corners of a mesh nearer than this, as a fraction of its greatest coordinate, are one: programs
+that write each triangle by itself round the same corner in several ways."""
+
 FLATTEST: Final = 5e-15
 """A box whose core is thinner than this fraction of its length is flat: roundoff of its corners."""
 
