@@ -24,6 +24,7 @@ import numpy as np
 
 import standoff as so
 from standoff.errors import StandoffError
+from standoff.kernels.body import layout as L
 from standoff_studies.soak import blocks
 from standoff_studies.soak.solid_outlines import Array
 
@@ -238,8 +239,6 @@ def judge_distances(
 
 def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
     """One part with its points and distances."""
-    from standoff.cad.measures import size_of
-
     rng = np.random.default_rng([seed, number, 3])
     seen, shape = Judged(parts=1), part_of(rng)
     while shape is None:
@@ -248,9 +247,9 @@ def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
     route = ROUTES[number % len(ROUTES)]
     try:
         solid = read_through(shape, route)
-        middle = np.asarray(solid.boundary.vertex_points).reshape(-1, 3).mean(axis=0)
-        spread = 0.6 * size_of(shape)
-        points = middle + rng.uniform(-spread, spread, (POINTS, 3))
+        reals = solid.boundary.reals
+        middle, half = reals[L.BOX_CENTRE : L.BOX_CENTRE + 3], reals[L.BOX_HALF : L.BOX_HALF + 3]
+        points = middle + 1.3 * half * rng.uniform(-1.0, 1.0, (POINTS, 3))
         lines = [*judge_points(shape, solid, points, seen)]
         lines += judge_distances(shape, solid, rng, seen)
     except StandoffError as error:
