@@ -38,9 +38,13 @@ HOLES: dict[str, list[tuple[float, float, float, float]]] = {
 }
 
 
+at: Any = pointer
+walked: Any = trimming.walk_face
+
+
 @numba.njit
 def walk_face(ints: Any, reals: Any, u: float, v: float, du: float, dv: float) -> Any:
-    return trimming.walk_face(pointer(ints, 0), pointer(reals, 0), 0, u, v, du, dv)
+    return walked(at(ints, 0), at(reals, 0), 0, u, v, du, dv)
 
 
 def ring(u: float, v: float, a: float, b: float) -> NurbsPcurve:
