@@ -133,7 +133,7 @@ SAME_VERTEX: Final = 1e-10
 """Vertices of the core nearer to each other than this (fraction of its size) are one, where more
 than three planes meet."""
 
-SAME_CORNER: Final = 1e-12
+MESH_CORNER: Final = 1e-12
 """Corners of a mesh nearer than this, as a fraction of its greatest coordinate, are one: programs
 that write each triangle by itself round the same corner in several ways."""
 

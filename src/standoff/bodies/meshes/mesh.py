@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from standoff.bodies.packing import Ints
-from standoff.bodies.tolerances import SAME_CORNER
+from standoff.bodies.tolerances import MESH_CORNER
 from standoff.checks.arrays import finite_rows, numbers
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffError, StandoffTypeError, not_installed
@@ -95,7 +95,7 @@ def _merged(points: Array, triangles: Ints) -> tuple[Array, Ints, int]:
     # of equal points the first; 0.0 makes one zero of the two
     _, first, number = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
     own = first[number.ravel()]
-    near = SAME_CORNER * float(np.abs(points).max(initial=0.0))
+    near = MESH_CORNER * float(np.abs(points).max(initial=0.0))
     pairs = scipy.spatial.cKDTree(points[first]).query_pairs(near, output_type="ndarray")
     if len(pairs):
         shape = (len(first), len(first))
