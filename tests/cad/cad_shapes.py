@@ -252,3 +252,48 @@ def crossing_shells() -> Any:
     builder.Add(solid, explored(box(2, 2, 2), "shell")[0])
     builder.Add(solid, explored(box(1.2, 1, 1, (1.0, 0.5, 0.5)), "shell")[0].Reversed())
     return solid
+
+
+def turned_cylinder(
+    at: tuple[float, float, float], way: tuple[float, float, float], radius: float, height: float
+) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    axes = gp_Ax2(gp_Pnt(*map(float, at)), gp_Dir(*map(float, way)))
+    return BRepPrimAPI_MakeCylinder(axes, radius, height).Shape()
+
+
+def blunt_cone(at: tuple[float, float, float], low: float, high: float, height: float) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone
+    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+
+    axes = gp_Ax2(gp_Pnt(*map(float, at)), gp_Dir(0, 0, 1))
+    return BRepPrimAPI_MakeCone(axes, low, high, height).Shape()
+
+
+def ball(at: tuple[float, float, float], radius: float) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeSphere
+    from OCP.gp import gp_Pnt
+
+    return BRepPrimAPI_MakeSphere(gp_Pnt(*map(float, at)), radius).Shape()
+
+
+def ring(major: float, minor: float) -> Any:
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+
+    return BRepPrimAPI_MakeTorus(major, minor).Shape()
+
+
+def from_boundary(shape: Any, points: list[tuple[float, float, float]]) -> list[float]:
+    """Distances of points from the boundary, by OpenCASCADE."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+    from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+    from OCP.gp import gp_Pnt
+
+    shells = explored(shape, "shell")
+    vertices = [BRepBuilderAPI_MakeVertex(gp_Pnt(*map(float, p))).Vertex() for p in points]
+    return [
+        min(BRepExtrema_DistShapeShape(vertex, shell).Value() for shell in shells)
+        for vertex in vertices
+    ]

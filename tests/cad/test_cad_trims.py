@@ -3,6 +3,7 @@ themselves."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,6 +14,7 @@ import pytest
 
 import standoff as so
 from shares import only
+from standoff.bodies.face_leaves import face_charts
 from standoff.cad.trims import of_file
 from standoff.cli import main
 from standoff.errors import CadError
@@ -82,3 +84,60 @@ def test_a_trimming_curve_that_is_given_a_turn_away_is_turned_back() -> None:
     assert np.allclose(found.point(1.0)[:2], row @ places, atol=1e-12)
     curve.first, curve.last = 20.0, 21.0
     assert of_file(flat, edge, on) is None
+
+
+def shaft() -> Any:
+    return made.cylinder((0, 0, -1), 1.0, 2.0)
+
+
+def dented(x: float, y: float) -> tuple[Any, list[tuple[float, float, float]]]:
+    cut = made.cut(shaft(), made.ball((x, y, 0.0), 0.3))
+    return cut, [(0.9 * x, 0.9 * y, 0.0), (x, y, 0.1), (0.85 * x, 0.85 * y, -0.1)]
+
+
+SEAMS: dict[str, Callable[[], tuple[Any, list[tuple[float, float, float]]]]] = {
+    # a shape with a hole, and points in the hole, 0.05 or more from its wall
+    "drilled shaft": lambda: (
+        made.cut(shaft(), made.turned_cylinder((-2, 0, 0), (1, 0, 0), 0.4, 4.0)),
+        [(-0.9, 0, 0), (0.9, 0, 0), (1.0, 0, 0), (0.9, 0.2, -0.2)],
+    ),
+    "square hole in a cone": lambda: (
+        made.cut(
+            made.blunt_cone((0, 0, -1), 1.0, 0.5, 2.0), made.box(4.0, 0.4, 0.4, (-2.0, -0.2, -0.2))
+        ),
+        [(0.76, 0, 0), (-0.76, 0.1, 0), (0.7, -0.1, 0.1)],
+    ),
+    "dent at 0": lambda: dented(1.0, 0.0),
+    "dent at half a turn": lambda: dented(-1.0, 0.0),
+    "dent somewhere": lambda: dented(0.6, 0.8),
+    "ring, drilled outside": lambda: (
+        made.cut(made.ring(2.0, 0.5), made.turned_cylinder((0, 0, 0), (-1, 0, 0), 0.2, 4.0)),
+        [(-1.6, 0, 0), (-2.0, 0.1, 0), (-2.45, 0, 0.1)],
+    ),
+    "ball, drilled off its axis": lambda: (
+        made.cut(
+            made.ball((0, 0, 0), 1.0), made.turned_cylinder((-2, 0.2, 0.1), (1, 0, 0), 0.3, 4)
+        ),
+        [(0.9, 0.2, 0.1), (-0.9, 0.3, 0.1), (0.0, 0.1, 0.0)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", only(["drilled shaft", "dent at half a turn"], list(SEAMS)))
+def test_a_hole_across_a_seam_or_past_a_pole_is_there(name: str) -> None:
+    shape, inside = SEAMS[name]()
+    part = so.cad.from_shape(shape)[0]
+    answer = part.solid.signed_distance(inside)
+    own = made.from_boundary(shape, inside)
+    assert answer.distance == pytest.approx(own, abs=1e-6)
+    assert (answer.lower_bound > 0.0).all()
+    ball = so.shapes.sphere(0.02)
+    for point, true in zip(inside, own, strict=True):
+        pose = np.eye(4)
+        pose[:3, 3] = point
+        assert so.distance(part.solid, ball, np.eye(4), pose).distance == pytest.approx(
+            true - 0.02, abs=1e-6
+        )
+    for chart in face_charts(part.shape):
+        u0, u1, _, _ = chart.rectangle
+        assert not chart.surface.periodic or u1 - u0 <= 2.0 * np.pi + 1e-9

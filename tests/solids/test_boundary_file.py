@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,9 @@ import pytest
 
 import standoff as so
 from standoff.bodies import Body, Boundary, Edge, Face
+from standoff.bodies.body import proven_again
+from standoff.bodies.boundary import made_boundary
+from standoff.bodies.closing import joined_parts
 from standoff.errors import StandoffError
 from standoff.geometry import (
     ConicArc,
@@ -89,6 +93,43 @@ def test_a_boundary_comes_back(name: str, tmp_path: Path) -> None:
     assert open_boundary(tmp_path / "again.json").digest == back.digest
 
 
+def missed() -> Boundary:
+    """The bolt, of which something proved that its parts miss each other by 1e-4."""
+    parts = bolt()
+    joined = joined_parts((), parts.edge_parts, parts.face_parts, None, 1e-3)
+    return made_boundary("missed", replace(joined, residual=1e-4))
+
+
+@pytest.mark.parametrize("made", [missed, lambda: loose_cylinder(1e-4)])
+def test_what_parts_are_proven_to_miss_comes_back(
+    made: Callable[[], Boundary], tmp_path: Path
+) -> None:
+    file, first = tmp_path / "part.json", made()
+    assert first.report.slack >= 1e-4
+    save_boundary(file, first)
+    back = open_boundary(file)
+    assert back.report.slack == first.report.slack
+    assert back.report.sewing_residual == 1e-4
+
+
+def test_a_file_without_what_parts_miss_opens_with_their_tolerance(tmp_path: Path) -> None:
+    file = tmp_path / "part.json"
+    save_boundary(file, missed())
+
+    def as_before(facts: dict[str, Any]) -> None:
+        facts["version"] = 1
+        del facts["sewing_residual"]
+
+    rewritten(file, as_before)
+    assert open_boundary(file).report.slack == 1e-3
+
+
+def loose_cylinder(residual: float) -> Body:
+    cylinder = so.shapes.cylinder(1.0, 2.0)
+    parts = cylinder.vertex_points, cylinder.edge_parts, cylinder.face_parts
+    return proven_again(parts, "loose", 0.0, 1e-3, residual)
+
+
 def test_a_cavity_stays_one(tmp_path: Path) -> None:
     made = MADE["hollow"]()
     save_boundary(tmp_path / "part.json", made)
@@ -112,7 +153,7 @@ def rewritten(file: Path, change: Callable[[dict[str, Any]], Any]) -> None:
         (lambda text: text[: len(text) // 2], "damaged"),
         (lambda text: '{"format": "else"}', "not a boundary's file"),
         (lambda text: "[1, 2]", "not a boundary's file"),
-        (lambda text: text.replace('"version": 1', '"version": 7'), "version 7"),
+        (lambda text: text.replace('"version": 2', '"version": 7'), "version 7"),
         (lambda text: text.replace("2.0", "2.0000000000000004", 1), "checksum"),
     ],
 )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.affine_maps import affine_map
-from standoff.bodies.assembly import assemble
+from standoff.bodies.assembly import Joined, assemble
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
@@ -93,19 +93,10 @@ class Body(Boundary):
         ValueError
             NaN, infinite, negative or wrongly shaped numbers.
         """
-        points = np.zeros((0, 3))
-        if shape_of(vertices) not in ((0,), (0, 3)):
-            points = finite(vertices, "vertices", (-1, 3))
         radius = magnitude_or_zero(rounding, "rounding")
-        edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
-        check_parts(points, edges, faces, dimension)
-        spots = [points] + [edge_points(e) for e in edges]
-        cloud = np.concatenate(spots)
-        rough = extent_of(cloud, "the body") if len(cloud) > 1 else float(not len(cloud))
-        tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
         if convexity_tolerance is not None:
             convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")
-        joined = assemble(points, edges, faces, dimension, rough, tolerance)
+        joined = joined_parts(vertices, edges, faces, dimension, tolerance)
         return made_body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
@@ -358,6 +349,39 @@ class Body(Boundary):
             return False
         spots = [self.vertex_points] + [edge_points(e) for e in self.edge_parts]
         return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
+
+
+def joined_parts(
+    vertices: Any,
+    edges: Sequence[Edge],
+    faces: Sequence[Face],
+    dimension: int,
+    tolerance: float | None,
+) -> Joined:
+    """Parts as they are given, checked, and joined; raises as `Body.from_brep` does."""
+    points = np.zeros((0, 3))
+    if shape_of(vertices) not in ((0,), (0, 3)):
+        points = finite(vertices, "vertices", (-1, 3))
+    edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
+    check_parts(points, edges, faces, dimension)
+    cloud = np.concatenate([points] + [edge_points(e) for e in edges])
+    rough = extent_of(cloud, "the body") if len(cloud) > 1 else float(not len(cloud))
+    tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
+    return assemble(points, edges, faces, dimension, rough, tolerance)
+
+
+def proven_again(
+    parts: tuple[Any, Sequence[Edge], Sequence[Face]],
+    name: str,
+    radius: float,
+    tolerance: float,
+    residual: float,
+) -> Body:
+    """A spatial body of vertices, edges and faces that are known to miss each other by up to a
+    residual, length; raises as `Body.from_brep` does."""
+    joined = joined_parts(*parts, 3, tolerance)
+    joined = replace(joined, residual=max(joined.residual, residual))
+    return made_body(name, radius, finish(joined, radius, None))
 
 
 def made_body(name: str, radius: float, packed: Packed) -> Body:

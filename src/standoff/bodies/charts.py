@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from standoff.bodies.packing import Chart, Coedge
+from standoff.bodies.periods import in_one_period
 from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, INWARD_STEP
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
@@ -114,6 +115,7 @@ def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
                 ]
             if surface.periodic:
                 _join_angles(chart, edges)
+                in_one_period(chart)
             charts.append(chart)
     return charts
 

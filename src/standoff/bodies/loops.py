@@ -99,7 +99,7 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
     BodyError
         Loops that bound no face: open ones, several side by side, a single one around a surface.
     """
-    loops = [_loop(chart, entries) for entries in traced(face, edges, number)]
+    loops = [_loop(chart, entries, edges) for entries in traced(face, edges, number)]
     wrong = _against(loops, chart, number)
     chart.holed = len(loops) > max(sum(loop.turns != 0 for loop in loops), 1)
     turned = {
@@ -146,17 +146,50 @@ def _closed(chart: Chart, collapsed: Sequence[Coedge]) -> bool:
     """Is a face all of a surface between two collapsed sides that go once around it, such as a
     sphere by longitude and latitude, but for holes?"""
     around = [abs(c.pcurve.point(c.last)[0] - c.pcurve.point(c.first)[0]) for c in collapsed]
-    whole = sum(round(turn / (2.0 * np.pi)) for turn in around)
-    return bool(chart.surface.periodic) and whole == 2
+    return bool(chart.surface.periodic) and round(sum(around) / (2.0 * np.pi)) == 2
 
 
-def _loop(chart: Chart, entries: tuple[int, ...]) -> Loop:
+def _loop(chart: Chart, entries: tuple[int, ...], edges: Sequence[Edge]) -> Loop:
     coedges = [c for c in chart.coedges if c.edge >= 0 and c.entry in entries]
     spots = [_points(c) for c in coedges]
     steps = sum(c.side * float(p[-1, 0] - p[0, 0]) for c, p in zip(coedges, spots, strict=True))
-    turns = round(steps / (2.0 * np.pi)) if chart.surface.periodic else 0
     links = np.concatenate([np.stack([p[:-1], p[1:]], 1) for p in spots])
-    return Loop(entries, _encircled(chart, coedges, spots), turns, links)
+    if not chart.surface.periodic:
+        return Loop(entries, _encircled(chart, coedges, spots), 0, links)
+    widths: dict[tuple[int, float], float] = {}
+    for c in chart.coedges:
+        if c.edge < 0:
+            (start, level, _), (end, *_) = c.pcurve.point(c.first), c.pcurve.point(c.last)
+            key = (-1 - c.edge, level)
+            widths[key] = widths.get(key, 0.0) + abs(end - start)
+    sides = [_along(*key, width, coedges, edges) for key, width in widths.items()]
+    turns = round((steps + sum(along for along, _ in sides)) / (2.0 * np.pi))
+    if turns:
+        return Loop(entries, _encircled(chart, coedges, spots), turns, links)
+    area = -sum(level * along for along, level in sides)
+    for c, points in zip(coedges, spots, strict=True):
+        area -= c.side * float(0.5 * (points[1:, 1] + points[:-1, 1]) @ np.diff(points[:, 0]))
+    return Loop(entries, area, 0, links)
+
+
+def _along(
+    vertex: int, level: float, width: float, coedges: Sequence[Coedge], edges: Sequence[Edge]
+) -> tuple[float, float]:
+    """(step in u, level of v) of a loop along a collapsed side: from the end of the coedge that
+    comes to its vertex to the one that leaves it; (0, 0) where it does not pass there."""
+    ends: dict[int, list[float]] = {1: [], -1: []}
+    for c in coedges:
+        edge = edges[c.edge]
+        if edge.first == vertex and c.first == edge.curve.first:
+            ends[c.side].append(c.pcurve.point(c.first)[0])
+        if edge.last == vertex and c.last == edge.curve.last:
+            ends[-c.side].append(c.pcurve.point(c.last)[0])
+    if len(ends[1]) != 1 or len(ends[-1]) != 1:
+        return 0.0, 0.0
+    step = ends[1][0] - ends[-1][0]
+    # up to turns where the loop was cut: it goes as far as the side is wide
+    ways = [step + 2.0 * np.pi * turns for turns in (0, -1, 1)]
+    return min(ways, key=lambda way: round(abs(abs(way) - width), 3)), level
 
 
 def _points(c: Coedge) -> Array:

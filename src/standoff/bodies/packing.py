@@ -42,7 +42,8 @@ class Coedge:
 
 @dataclass
 class Chart:
-    """A surface with its trimming loops; `holed` if one loop may lie inside another."""
+    """A surface with its trimming loops; `holed` if one loop may lie inside another. `period` is
+    where the one of an angle u begins in which they lie; None where that does not matter."""
 
     surface: Surface
     face: int
@@ -50,6 +51,7 @@ class Chart:
     limit: float = np.inf
     coedges: list[Coedge] = field(default_factory=list)
     holed: bool = False
+    period: float | None = None
 
 
 @dataclass
@@ -222,6 +224,9 @@ def _pack_faces(w: Writer, body: Assembled, inner: Sequence[Sequence[float]] | N
         if inner is not None:
             reals[L.INNER : L.INNER + 4] = inner[k]
         offset = w.real_block(reals)
+        periodic = int(chart.surface.periodic)
+        if chart.period is not None:
+            periodic = w.real_block([chart.period])
         chart_rows.append(
             (
                 chart.surface.kind,
@@ -229,7 +234,7 @@ def _pack_faces(w: Writer, body: Assembled, inner: Sequence[Sequence[float]] | N
                 len(coedge_rows),
                 len(chart.coedges),
                 chart.face,
-                int(chart.surface.periodic),
+                periodic,
             )
         )
         for c in chart.coedges:

@@ -34,6 +34,13 @@ PIECE_ROUNDOFF: Final = 1e-15
 """A parameter belongs to a piece of a trimming curve whose end it passes by this (relative to 1 +
 the parameter): the roundoff of ends that were computed in two ways."""
 
+PERIOD_ROUNDOFF: Final = 1e-12
+"""Radians by which trimming curves may leave their period: the roundoff of where they are cut."""
+
+SMALLEST_PART: Final = 1e-8
+"""A trimming curve is not divided beyond this fraction of it to prove that it is in its period: the
+hull of a part that begins square to the angle leaves it by the square of its length."""
+
 CHART_RIM: Final = 1e-3
 """A chart sees a point whose depth (cosine from its centre) is above this."""
 
@@ -125,6 +132,10 @@ the sharp one: a smaller core cannot be distinguished from a point."""
 SAME_VERTEX: Final = 1e-10
 """Vertices of the core nearer to each other than this (fraction of its size) are one, where more
 than three planes meet."""
+
+MESH_CORNER: Final = 1e-12
+"""Corners of a mesh nearer than this, as a fraction of its greatest coordinate, are one: programs
+that write each triangle by itself round the same corner in several ways."""
 
 FLATTEST: Final = 5e-15
 """A box whose core is thinner than this fraction of its length is flat: roundoff of its corners."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.assembly import Joined
-from standoff.bodies.body import Body
+from standoff.bodies.body import Body, proven_again
 from standoff.bodies.boundary import Boundary, EdgeKind, made_boundary
 from standoff.bodies.charts import loop_pcurve
 from standoff.bodies.closing import joined_parts
@@ -232,13 +232,8 @@ def _convex(boundary: Boundary, pieces: Pieces, joined: Joined) -> Body | None:
     if getattr(found, "cavities", ()) or bent & set(boundary.edge_kinds):
         return None
     try:
-        return Body.from_brep(
-            np.reshape(pieces.vertices, (-1, 3)),
-            pieces.edges,
-            pieces.faces,
-            name=boundary.name,
-            tolerance=joined.tolerance,
-        )
+        parts = np.reshape(pieces.vertices, (-1, 3)), pieces.edges, pieces.faces
+        return proven_again(parts, boundary.name, 0.0, joined.tolerance, found.sewing_residual)
     except StandoffError:
         return None
 

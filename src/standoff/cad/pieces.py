@@ -7,6 +7,7 @@ closed edge whose vertex others use, or whose ends meet in a corner, becomes two
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -18,8 +19,11 @@ from standoff.cad.opencascade import cast, coordinates, explored, forward
 from standoff.cad.seams import once
 from standoff.cad.sphere_faces import sphere_by_angles, sphere_charts, sphere_sense
 from standoff.cad.surfaces import Carrier, basis_surface, carrier
+from standoff.cad.tolerances import MISSED_POLE
 from standoff.cad.trims import trim
 from standoff.errors import BodyError, StandoffError
+from standoff.geometry.curves import FULL_TURN
+from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array
 
 
@@ -190,7 +194,7 @@ class _Maker:
         apexes = []
         if on.surface.part_of is None:
             collapsed = [e for e in uses if BRep_Tool.Degenerated_s(e)]
-            apexes = [self._apex(e, face, on, over) for e in collapsed]
+            apexes = [self._met(self._apex(e, face, on, over), made, trims) for e in collapsed]
             if not made and not apexes:
                 raise Refused(f"a {on.kind} without an edge")
         loop = tuple((number, way) for number, _, way, _ in made)
@@ -225,6 +229,27 @@ class _Maker:
         lo, hi = sorted(ends[:, 1 - across].tolist())
         side = ("u", "v")[across] + ("0" if middle[across] > level else "1")
         return Apex(self.vertex(_ends(edge)[0]), level, lo, hi, side)
+
+    def _met(self, apex: Apex, made: Sequence[Any], trims: Sequence[Pcurve | None]) -> Apex:
+        """A collapsed side that ends where the trimming curves at its vertex do."""
+        if apex.side[0] != "v":
+            return apex
+        ends = [
+            pcurve.point(t)[0]
+            for (number, _, _, _), pcurve in zip(made, trims, strict=True)
+            if pcurve is not None
+            for edge in [self.pieces.edges[number]]
+            for vertex, t in ((edge.first, edge.curve.first), (edge.last, edge.curve.last))
+            if vertex == apex.vertex
+        ]
+        return replace(apex, lo=_near(apex.lo, ends), hi=_near(apex.hi, ends))
+
+
+def _near(u: float, ends: Sequence[float]) -> float:
+    """The angle among some, up to turns, that another one misses by a little; else itself."""
+    turned = [end + FULL_TURN * round((u - end) / FULL_TURN) for end in ends]
+    best = min(turned, key=lambda end: abs(end - u), default=u)
+    return best if abs(best - u) <= MISSED_POLE else u
 
 
 def _ends(edge: Any) -> tuple[Any, Any]:

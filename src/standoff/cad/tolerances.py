@@ -54,3 +54,11 @@ is constant: the roundoff of angles, and of the file's own digits."""
 WHOLE_PROFILE: Final = 1e-9
 """An extruded arc is a whole turn if its angle is one to within this fraction: the digits that
 files keep of angles."""
+
+AT_POLE: Final = 1e-6
+"""A point this near to the axis of an angle, as a fraction of the surface's size there, is on it:
+files round the ends of edges to about a tenth of this, and the angle has no digits there."""
+
+MISSED_POLE: Final = 1e-2
+"""Radians by which a file's trimming curves may miss the angle at which their edge leaves a pole:
+OpenCASCADE's end some 1e-4 before it."""

@@ -26,7 +26,7 @@ from standoff.cad.curves import (
 from standoff.cad.miss_bounds import misses
 from standoff.cad.opencascade import coordinates
 from standoff.cad.surfaces import Carrier
-from standoff.cad.tolerances import CONSTANT, FITTED_TRIM
+from standoff.cad.tolerances import AT_POLE, CONSTANT, FITTED_TRIM
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.exact_pcurves import pcurve_of
@@ -215,6 +215,12 @@ def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPc
 
     def places(ts: Array) -> Array:
         uv = inverse(curve.points(ts))
+        for t, way in ((curve.first, 1.0), (curve.last, -1.0)):
+            for row in uv[ts == t]:
+                if on.angles[0] and _at_pole(on, row):
+                    # there the angle is that in which the curve leaves
+                    beside = curve.point(t) + way * curve.jet(t)[1]
+                    uv[ts == t, 0] = inverse(beside[None])[0, 0]
         for k in (0, 1):
             if on.angles[k]:
                 uv[:, k] = np.unwrap(uv[:, k])
@@ -229,6 +235,12 @@ def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPc
         breaks = np.sort(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
     assert found is not None
     return found
+
+
+def _at_pole(on: Carrier, uv: Array) -> bool:
+    """Is a point on the axis of an angle, up to what a file rounds?"""
+    _, xu, xv, *_ = on.surface.jet(float(uv[0]), float(uv[1]))
+    return bool(np.linalg.norm(xu) <= AT_POLE * np.linalg.norm(xv))
 
 
 def _fitted(

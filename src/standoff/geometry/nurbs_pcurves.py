@@ -45,6 +45,9 @@ class BezierPcurve(Pcurve):
         shift = np.outer(self.matrix[:, 2], [angle, 0.0, 0.0])
         return BezierPcurve(self.matrix + shift, self.first, self.last)
 
+    def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
+        return [(_part(self, first, last), first, last)]
+
     def _block(self) -> Array:
         return np.concatenate([[self.first, self.last], self.data])
 

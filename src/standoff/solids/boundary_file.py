@@ -16,6 +16,7 @@ from typing import BinaryIO
 import numpy as np
 
 from standoff.bodies import Apex, Body, Boundary, Edge, Face
+from standoff.bodies.body import proven_again
 from standoff.bodies.boundary import made_boundary
 from standoff.bodies.closing import joined_parts
 from standoff.bodies.report import BoundaryReport
@@ -33,7 +34,10 @@ from standoff.solids.stored_parts import (
 )
 from standoff.whole_files import file_name, write_whole
 
-FORMAT, VERSION = "standoff boundary", 1
+FORMAT, VERSION = "standoff boundary", 2
+# Its files lack what parts were proven to miss each other by; of a boundary that is at most what
+# they were allowed to, which its slack is then.
+WITHOUT_RESIDUAL = 1
 
 
 def save_boundary(path: str | os.PathLike[str], boundary: Boundary | Body) -> None:
@@ -85,6 +89,7 @@ def _facts(boundary: Boundary | Body) -> Facts:
         "convex": isinstance(boundary, Body),
         "radius": boundary.radius,
         "sewing_tolerance": boundary.report.sewing_tolerance,
+        "sewing_residual": boundary.report.sewing_residual,
         "vertices": boundary.vertex_points.tolist(),
         "edges": [_edge_facts(edge) for edge in boundary.edge_parts],
         "faces": [_face_facts(boundary, k) for k in range(boundary.n_faces)],
@@ -127,7 +132,9 @@ def _of_cavities(boundary: Boundary | Body) -> set[int]:
 def open_boundary(path: str | os.PathLike[str]) -> Boundary | Body:
     """Read a boundary, or a convex body, that `save_boundary` wrote.
 
-    It is made anew from its parts, with all checks and proofs of its making.
+    It is made anew from its parts, with all checks and proofs of its making. What they were proven
+    to miss each other by is kept; a file of version 1 lacks it, and a boundary's slack then is the
+    tolerance within which its parts were joined.
 
     Parameters
     ----------
@@ -151,9 +158,11 @@ def open_boundary(path: str | os.PathLike[str]) -> Boundary | Body:
         raise StandoffError(f"{file}: not a boundary's file, or damaged: {error}") from error
     if not isinstance(facts, dict) or facts.get("format") != FORMAT:
         raise StandoffError(f"{file}: not a boundary's file.")
-    if facts.get("version") != VERSION:
+    if facts.get("version") not in (VERSION, WITHOUT_RESIDUAL):
         found = shown(facts.get("version"))
-        raise StandoffError(f"{file}: version {found}; this Standoff reads version {VERSION}.")
+        raise StandoffError(
+            f"{file}: version {found}; this Standoff reads versions 1 to {VERSION}."
+        )
     if facts.get("sha256") != _checksum(facts):
         raise StandoffError(f"{file}: damaged, or changed by hand: its checksum is another one.")
     try:
@@ -173,14 +182,17 @@ def _made(facts: Facts) -> Boundary | Body:
     ]
     faces = [_made_face(one) for one in facts["faces"]]
     name, tolerance = str(facts["name"]), float(facts["sewing_tolerance"])
+    old = facts["version"] == WITHOUT_RESIDUAL
     if facts["convex"]:
-        return Body.from_brep(
-            vertices, edges, faces, rounding=facts["radius"], name=name, tolerance=tolerance
-        )
+        residual = 0.0 if old else float(facts["sewing_residual"])
+        radius = float(facts["radius"])
+        return proven_again((vertices, edges, faces), name, radius, tolerance, residual)
     senses = [one["sense"] for one in facts["faces"]]
     joined = joined_parts(vertices, edges, faces, senses, tolerance)
+    residual = max(joined.residual, tolerance if old else float(facts["sewing_residual"]))
     # what was finished once has no two solids: a shell inside the outer one is a cavity
-    return made_boundary(name, replace(joined, claims=[0] * len(joined.shells)))
+    claims = [0] * len(joined.shells)
+    return made_boundary(name, replace(joined, residual=residual, claims=claims))
 
 
 def _made_face(facts: Facts) -> Face:

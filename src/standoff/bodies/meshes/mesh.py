@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
 from standoff.bodies.packing import Ints
+from standoff.bodies.tolerances import MESH_CORNER
 from standoff.checks.arrays import finite_rows, numbers
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffError, StandoffTypeError, not_installed
@@ -49,8 +51,8 @@ def volume_of(points: Array, triangles: Ints) -> float:
 def read_mesh(mesh: Any) -> Mesh:
     """A closed mesh from a trimesh object, a file's path, or a pair (vertices, triangles).
 
-    Equal points are made one, and triangles without area left out. A mesh that faces inward is
-    turned, which its notes tell.
+    Points that are equal but for roundoff are made one, and triangles without area left out. A mesh
+    that faces inward is turned, which its notes tell.
 
     Raises
     ------
@@ -68,13 +70,9 @@ def read_mesh(mesh: Any) -> Mesh:
     """
     points, triangles = _arrays(mesh)
     notes = []
-    # of equal points the first; 0.0 makes one zero of the two
-    found, first, number = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
-    if len(found) < len(points):
-        notes.append(f"{len(points) - len(found)} points equal to others are one with them")
-    rank = np.empty(len(found), dtype=np.int64)
-    rank[np.argsort(first)] = np.arange(len(found))
-    points, triangles = points[np.sort(first)], rank[number.ravel()][triangles]
+    points, triangles, merged = _merged(points, triangles)
+    if merged:
+        notes.append(f"{merged} points equal to others are one with them")
     a, b, c = triangles.T
     flat = (a == b) | (b == c) | (c == a)
     if flat.any():
@@ -90,6 +88,24 @@ def read_mesh(mesh: Any) -> Mesh:
     if volume == 0.0:
         raise BodyError("The mesh encloses no volume.", "mesh", mesh)
     return Mesh(points, triangles, beyond, tuple(notes))
+
+
+def _merged(points: Array, triangles: Ints) -> tuple[Array, Ints, int]:
+    """With one point, the first, for all that are equal but for roundoff; how many are left out."""
+    # of equal points the first; 0.0 makes one zero of the two
+    _, first, number = np.unique(points + 0.0, axis=0, return_index=True, return_inverse=True)
+    own = first[number.ravel()]
+    near = MESH_CORNER * float(np.abs(points).max(initial=0.0))
+    pairs = scipy.spatial.cKDTree(points[first]).query_pairs(near, output_type="ndarray")
+    if len(pairs):
+        shape = (len(first), len(first))
+        graph = scipy.sparse.coo_array((np.ones(len(pairs)), pairs.T), shape)
+        groups = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+        least = np.full(int(groups.max()) + 1, len(points))
+        np.minimum.at(least, groups, first)
+        own = least[groups][number.ravel()]
+    kept, numbers_of = np.unique(own, return_inverse=True)
+    return points[kept], numbers_of.ravel()[triangles], len(points) - len(kept)
 
 
 def _arrays(mesh: Any) -> tuple[Array, Ints]:

@@ -35,8 +35,10 @@ REAL_HEADER = 10
 # A face: first chart, number of charts.
 FACE_STRIDE = 2
 
-# A chart: surface kind, offset in reals, first coedge, number of coedges, face, and 1 where u is
-# an angle.
+# A chart: surface kind, offset in reals, first coedge, number of coedges, face, and where u is an
+# angle not 0: REPEATS where all coedges are rims of constant v, which wrap; else the offset in
+# reals of the start of the period in which they lie.
+REPEATS = 1
 CHART_STRIDE = 6
 CHART_KIND, CHART_REALS, CHART_COEDGE, CHART_N_COEDGES, CHART_FACE, CHART_PERIODIC = range(6)
 # Its reals: affine map (3x3 row-major, shift), inverse of the 3x3, then the three below, then

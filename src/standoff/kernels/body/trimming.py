@@ -41,6 +41,24 @@ def wrapped(t, t0):
 
 
 @uncontracted
+def in_period(ints, reals, record, u):
+    """u within the period in which the trimming curves of a chart lie. `record` is the chart's."""
+    at = ints[record + L.CHART_PERIODIC]
+    if at <= L.REPEATS or reals[at] <= u <= reals[at] + TURN:
+        return u
+    return wrapped(u, reals[at])
+
+
+@uncontracted
+def next_period(ints, reals, record, u):
+    """1 or -1 for parameters past the end or the start of that period, else 0."""
+    at = ints[record + L.CHART_PERIODIC]
+    if at <= L.REPEATS or reals[at] <= u <= reals[at] + TURN:
+        return 0
+    return 1 if u > reals[at] else -1
+
+
+@uncontracted
 def in_range(ints, reals, coedge, t):
     """(inside, t) with t brought into the pcurve's range, periods included."""
     c = coedge_record(ints, coedge)
@@ -48,7 +66,8 @@ def in_range(ints, reals, coedge, t):
     t0, t1 = reals[o + L.PCURVE_FIRST], reals[o + L.PCURVE_LAST]
     kind = ints[c + L.COEDGE_KIND]
     periodic = ints[chart_record(ints, ints[c + L.COEDGE_CHART]) + L.CHART_PERIODIC] != 0
-    around = periodic and kind == L.LINE and reals[o + L.PCURVE_DATA] != 0.0
+    p = o + L.PCURVE_DATA
+    around = periodic and kind == L.LINE and abs(reals[p]) == 1.0 and reals[p + 3] == 0.0
     if kind == L.CONIC or around:
         t = wrapped(t, t0)
         if t > t1 and t - TURN >= t0 - PCURVE_OVERLAP:
@@ -136,6 +155,18 @@ def far_out(reals, o, u, v):
 
 
 @uncontracted
+def to_limit(limit, u, v, du, dv):
+    """How much of a step fits within |u|, |v| <= limit, at most 1."""
+    best = 1.0
+    if limit < inf:
+        for k in range(2):
+            a, da = (u, du) if k == 0 else (v, dv)
+            if da != 0.0:
+                best = min(best, max(((limit if da > 0.0 else -limit) - a) / da, 0.0))
+    return best
+
+
+@uncontracted
 def walk_face(ints, reals, chart, u, v, du, dv):
     """(s, hit, index, t): how much of the step fits on the face, s <= 1, and what it hits."""
     r = chart_record(ints, chart)
@@ -143,29 +174,30 @@ def walk_face(ints, reals, chart, u, v, du, dv):
     best, hit, index, where = 1.0, NO_HIT, -1, 0.0
     if du == 0.0 and dv == 0.0:
         return best, hit, index, where
-    limit = reals[ints[r + L.CHART_REALS] + L.LIMIT]
-    if limit < inf:
-        for k in range(2):
-            a, da = (u, du) if k == 0 else (v, dv)
-            if da != 0.0:
-                s = max(((limit if da > 0.0 else -limit) - a) / da, 0.0)
-                if s < best:
-                    best, hit = s, HIT_LIMIT
+    u = in_period(ints, reals, r, u)
+    turn = next_period(ints, reals, r, u + du)
+    best = to_limit(reals[ints[r + L.CHART_REALS] + L.LIMIT], u, v, du, dv)
+    if best < 1.0:
+        hit = HIT_LIMIT
     # the nearest crossings behind: the last one inward where the start is on the face
     left, entered, left_at, left_t = -inf, -inf, -1, 0.0
     for k in range(first, first + ints[r + L.CHART_N_COEDGES]):
         # beside a crease parameters of any order of magnitude differ
         creased = is_creased(ints, ints[L.N_FACES] + ints[coedge_record(ints, k) + L.COEDGE_EDGE])
         noise = 0.0 if creased else PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
-        count, s1, out1, t1, s2, out2, t2 = crossings(ints, reals, k, u, v, du, dv, noise)
-        for m in range(count):
-            s, out, t = (s1, out1, t1) if m == 0 else (s2, out2, t2)
-            if out > 0 and 0.0 <= s <= best:
-                best, hit, index, where = s, HIT_COEDGE, k, t
-            elif out > 0 and left < s < 0.0:
-                left, left_at, left_t = s, k, t
-            elif out < 0 and entered < s <= 0.0:
-                entered = s
+        # and, where the step leaves the period, as it enters the next one
+        for period in range(2 if turn else 1):
+            count, s1, out1, t1, s2, out2, t2 = crossings(
+                ints, reals, k, u - period * turn * TURN, v, du, dv, noise
+            )
+            for m in range(count):
+                s, out, t = (s1, out1, t1) if m == 0 else (s2, out2, t2)
+                if out > 0 and 0.0 <= s <= best:
+                    best, hit, index, where = s, HIT_COEDGE, k, t
+                elif out > 0 and left < s < 0.0:
+                    left, left_at, left_t = s, k, t
+                elif out < 0 and entered < s <= 0.0:
+                    entered = s
     if left > entered and -left * hypot(du, dv) <= TOUCH_WIDTH:
         # roundoff has carried the start outside: back to where it left
         return 0.0, HIT_COEDGE, left_at, left_t
@@ -243,6 +275,7 @@ def on_face(ints, reals, chart, u, v):
     r = chart_record(ints, chart)
     first = ints[r + L.CHART_COEDGE]
     n = ints[r + L.CHART_N_COEDGES]
+    u = in_period(ints, reals, r, u)
     noise = PARAMETER_NOISE * (1.0 + abs(u) + abs(v))
     o = ints[r + L.CHART_REALS]
     if well_inside(reals, o, u, v):

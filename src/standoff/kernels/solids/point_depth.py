@@ -32,6 +32,7 @@ from standoff.kernels.solids.spatial_tolerances import (
     ALONG_NORMAL,
     BESIDE_EDGE,
     NO_SIDE,
+    UNCLEAR_NORMAL,
 )
 from standoff.kernels.values import Pose
 
@@ -140,7 +141,9 @@ def outwards(seen, normals, leaf, u, v):
     r = leaf_ints(seen, leaf)
     dim = seen.own[r + S.DIM]
     if dim == 2:
-        return features.chart_normal(seen.ints, seen.reals, seen.own[r + S.CHART], u, v)
+        jet = features.chart_jet(seen.ints, seen.reals, seen.own[r + S.CHART], u, v)
+        n, noise = features.noisy_normal(seen.ints, seen.reals, seen.own[r + S.CHART], jet)
+        return n if noise < UNCLEAR_NORMAL else ZERO
     if dim == 1:
         return across_edge(seen, leaf, u, v)
     number = seen.own[r + S.FEATURE] - seen.ints[L.N_FACES] - seen.ints[L.N_EDGES]

@@ -111,6 +111,9 @@ first steps of its Newton's method may make it so great: a rim that is tilted by
 of 1e-8 all around, and is level in one place."""
 NO_SIDE: Final = 1e-3
 """Length of a sum of unit normals below which it tells no side."""
+UNCLEAR_NORMAL: Final = 0.1
+"""Chord of the unit sphere: a normal that roundoff may turn by this tells no side: at a pole it may
+be turned round."""
 ALONG_NORMAL: Final = 1.0 - 1e-6
 """Cosine: a point is along a face's normal, so that the face says on which side it is. At a place
 within a face it is 1. At a sharp edge one face's normal is nearly against the other's."""

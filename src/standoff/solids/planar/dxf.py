@@ -165,13 +165,13 @@ def _arc(entity: Any) -> list[Curve]:
     r = float(entity.dxf.radius)
     if not r > 0.0:
         raise StandoffError(f"its radius is {r:g}, at {centre}: remove it.")
-    first, last = 0.0, 2.0 * math.pi
+    first, turn = 0.0, 2.0 * math.pi
     if entity.dxftype() == "ARC":
         first = math.radians(float(entity.dxf.start_angle))
         last = math.radians(float(entity.dxf.end_angle))
-        last = first + (last - first) % (2.0 * math.pi) or first + 2.0 * math.pi
+        turn = (last - first) % (2.0 * math.pi) or turn
     a, b = (_flat(system.to_wcs(axis)) * r for axis in ((1, 0, 0), (0, 1, 0)))
-    return [ConicArc(centre, a, b, first, last)]
+    return [ConicArc(centre, a, b, first, first + turn)]
 
 
 def _ellipse(entity: Any) -> list[Curve]:

@@ -162,7 +162,7 @@ def side_of(solid: SolidModel, best: Array, others: Array, point: Array) -> floa
 
 
 def _by_ray(solid: SolidModel, point: Array) -> float:
-    return -1.0 if solid.boundary.contains(point[None])[0] else 1.0
+    return -1.0 if solid.rays.inside(point) else 1.0
 
 
 def _alone(solid: SolidModel, found: Found) -> bool:

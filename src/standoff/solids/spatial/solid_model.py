@@ -96,6 +96,13 @@ class SolidModel(KeepsReadOnly):
 
         return enclosed_by(self.boundary, range(self.boundary.n_faces), MASS_TOLERANCE)
 
+    @cached_property
+    def rays(self) -> Any:
+        """Rays that decide whether a point is inside where nothing nearer does (`Crossings`)."""
+        from standoff.bodies.crossings import Crossings
+
+        return Crossings(self.boundary)
+
     @property
     def name(self) -> str:
         return self._given.name

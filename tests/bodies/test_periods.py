@@ -1,0 +1,155 @@
+"""Trimming curves where u is an angle: wherever loops lie, the face is what one period shows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import numpy as np
+import pytest
+from numpy.random import Generator
+
+from standoff.bodies.packing import Assembled, Chart, Coedge, pack
+from standoff.bodies.periods import PERIOD, in_one_period, is_rim
+from standoff.bodies.topology import Edge, Face
+from standoff.errors import BodyError
+from standoff.geometry import ConicArc, Cylinder
+from standoff.geometry.nurbs_pcurves import NurbsPcurve
+from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
+from standoff.kernels.body import trimming
+from standoff.kernels.compiler.decorators import pointer
+from standoff.kernels.entries.queries import on_face
+
+CYLINDER = Cylinder(np.eye(3), np.zeros(3))
+CIRCLE = ConicArc(np.zeros(3), *np.eye(3)[:2])
+EDGE, WALKS = 0.8, 20
+# Holes (u, v, half axis along u, along v): in the middle, over the ends of the usual periods, some
+# turns away, nearly all round, and so many that no angle is free.
+HOLES: dict[str, list[tuple[float, float, float, float]]] = {
+    "none": [],
+    "in the middle": [(2.0, 0.1, 0.7, 0.3)],
+    "across 0": [(0.0, 0.0, 0.5, 0.4)],
+    "across pi": [(np.pi, 0.2, 0.9, 0.2)],
+    "two turns away": [(12.0, -0.1, 0.6, 0.3), (-9.0, 0.3, 0.4, 0.2)],
+    "nearly all round": [(1.0, 0.0, 3.0, 0.4)],
+    "no angle free": [(k * 1.2, -0.3 if k % 2 else 0.3, 0.7, 0.2) for k in range(6)],
+}
+
+
+at: Any = pointer
+walked: Any = trimming.walk_face
+
+
+@numba.njit
+def walk_face(ints: Any, reals: Any, u: float, v: float, du: float, dv: float) -> Any:
+    return walked(at(ints, 0), at(reals, 0), 0, u, v, du, dv)
+
+
+def ring(u: float, v: float, a: float, b: float) -> NurbsPcurve:
+    """An ellipse about (u, v), in (u, v)."""
+    corners = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    weights = [1.0, np.sqrt(0.5)] * 4 + [1.0]
+    knots = np.repeat(np.arange(5.0), [3, 2, 2, 2, 3])
+    return NurbsPcurve(np.array([u, v]) + np.array(corners) * [a, b], knots, weights)
+
+
+def wave(start: float) -> NurbsPcurve:
+    """A rim near v = EDGE that goes up and down, once round from `start` on."""
+    rises = EDGE + 0.15 * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
+    points = np.column_stack([start + PERIOD * np.linspace(0.0, 1.0, 5), rises])
+    return NurbsPcurve(points, [0.0] * 4 + [0.5] + [1.0] * 4)
+
+
+def level(v: float, start: float) -> Pcurve:
+    return Pcurve(L.LINE, np.array([[1.0, 0.0, start], [0.0, 0.0, v], [0.0, 0.0, 1.0]]))
+
+
+def banded(holes: list[tuple[float, float, float, float]], upper: Pcurve) -> Chart:
+    """A band from v = -EDGE to a rim, with holes."""
+    pcurves = [(level(-EDGE, 0.3), 1, (0.0, PERIOD))]
+    pcurves += [(upper, -1, (0.0, PERIOD if upper.kind == L.LINE else 1.0))]
+    pcurves += [(ring(*hole), -1, (0.0, 4.0)) for hole in holes]
+    coedges = [
+        Coedge(k, piece, first, last, side, k)
+        for k, (pcurve, side, ends) in enumerate(pcurves)
+        for piece, first, last in pcurve.pieces(*ends)
+    ]
+    return Chart(CYLINDER, 0, coedges=coedges)
+
+
+def packed(chart: Chart) -> tuple[Any, Array]:
+    edges = [Edge(CIRCLE)] * (1 + max(c.edge for c in chart.coedges))
+    loop = tuple((k, 1) for k in range(len(edges)))
+    parts = Assembled(3, np.zeros((0, 3)), edges, [Face((CYLINDER,), loop)], [chart])
+    return pack(parts, [], (-np.ones(3), np.ones(3)), 0.0, 0.0)
+
+
+def signed(holes: list[tuple[float, float, float, float]], upper: Pcurve, places: Array) -> Array:
+    """Positive on the face, by about how much in (u, v); of places (n, 2)."""
+    u, v = places.T
+    top = np.full(len(u), EDGE)
+    if upper.kind != L.LINE:
+        spots = upper.homogeneous_at(np.linspace(0.0, 1.0, 2001))[:, 0, :2]
+        top = np.interp((u - spots[0, 0]) % PERIOD + spots[0, 0], *spots.T)
+    found = np.minimum(v + EDGE, top - v)
+    for at, height, a, b in holes:
+        off = (u - at + np.pi) % PERIOD - np.pi
+        for turn in (-PERIOD, 0.0, PERIOD):
+            found = np.minimum(found, np.hypot((off + turn) / a, (v - height) / b) - 1.0)
+    return np.asarray(found)
+
+
+UPPER = {"level": level(EDGE, 2.0), "wave": wave(0.0), "turned wave": wave(-1.0)}
+
+
+@pytest.mark.parametrize("upper", UPPER)
+@pytest.mark.parametrize("name", HOLES)
+def test_a_face_is_the_same_in_every_period(name: str, upper: str, rng: Generator) -> None:
+    holes, top = HOLES[name], UPPER[upper]
+    chart = banded(holes, top)
+    in_one_period(chart)
+    ints, reals = packed(chart)
+    repeats = all(is_rim(c) for c in chart.coedges)
+    assert (chart.period is None) == repeats == (name == "none" and upper == "level")
+    if not repeats:
+        assert chart.period is not None
+        for c in chart.coedges:
+            us = [c.pcurve.point(t)[0] for t in np.linspace(c.first, c.last, 50)]
+            assert chart.period - 1e-11 <= min(us) <= max(us) <= chart.period + PERIOD + 1e-11
+    places = rng.uniform((-11.0, -1.0), (11.0, 1.0), (200, 2))
+    true = signed(holes, top, places)
+    for (u, v), by in zip(places.tolist(), true, strict=True):
+        if abs(by) > 1e-4:
+            assert on_face(ints, reals, 0, u, v) == (by > 0.0), (u, v)
+    steps = np.linspace(0.0, 1.0, 801)
+    starts = places[true > 1e-3][:WALKS]
+    for (u, v), (du, dv) in zip(
+        starts, rng.uniform(-1.0, 1.0, (WALKS, 2)) * [5.0, 1.0], strict=False
+    ):
+        way = np.column_stack([u + du * steps, v + dv * steps])
+        by = signed(holes, top, way)
+        off = np.flatnonzero(by < 0.0)
+        s, hit, _, _ = walk_face(ints, reals, u, v, du, dv)
+        if len(off):
+            assert hit == trimming.HIT_COEDGE
+            assert s == pytest.approx(steps[off[0]], abs=3e-3)
+        elif by.min() > 1e-3:
+            assert (s, hit) == (1.0, trimming.NO_HIT)
+
+
+def test_what_fits_stays_as_it_is() -> None:
+    chart = banded([], wave(0.0))
+    chart.coedges[0].pcurve = level(-EDGE, 0.0)
+    before = list(chart.coedges)
+    in_one_period(chart)
+    assert chart.coedges == before
+    assert chart.period == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_curve_that_can_not_be_cut_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    chart = banded(HOLES["across 0"], wave(0.0))
+    monkeypatch.setattr("standoff.bodies.periods._parts", lambda c, start: [c])
+    with pytest.raises(BodyError, match="leaves the period of u"):
+        in_one_period(chart)

@@ -1,0 +1,39 @@
+"""A few of the parts that the soak draws in their thousands, judged by OpenCASCADE."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("OCP")
+
+from standoff_studies.soak import solid_trims as trims
+
+FEW = 6
+"""Of a thousand parts: what a minute of one core allows."""
+
+
+@pytest.mark.parametrize("number", range(FEW))
+def test_a_part_is_as_opencascade_has_it(number: int) -> None:
+    seen, lines = trims.judge_part(number, 1)
+    assert seen.sound, lines
+    assert seen.points + seen.refused.total() > 0
+
+
+def test_what_is_wrong_is_noticed() -> None:
+    seen = trims.Judged(parts=1)
+    shape = trims.primitive("ball", np.random.default_rng(1), False)
+    solid = trims.read_through(shape, "as it is")
+    points = np.random.default_rng(2).uniform(-1.0, 1.0, (4, 3))
+    assert not list(trims.judge_points(shape, solid, points, seen))
+    told = solid.signed_distance(points)
+    for wrong in (-told.distance, told.distance + 1e-3):
+        bent = SimpleNamespace(
+            slack=0.0, signed_distance=lambda points, wrong=wrong: told._replace(distance=wrong)
+        )
+        assert list(trims.judge_points(shape, bent, points, seen))
+    assert (seen.sides, seen.far, seen.sound) == (4, 4, False)
+    assert not replace(seen, sides=0, far=0).plus(seen).sound
