@@ -35,7 +35,7 @@ NOUNS = {
     "switches": ("switch", "switches"),
     "searches": ("search", "searches"),
     "boxes": ("box", "boxes"),
-    "regularised": ("regularised solve",),
+    "regularised": ("regularised solve", ""),
 }
 """What is counted, singular and plural, where the count's name with or without its s does not say
 it."""
@@ -230,11 +230,11 @@ def _advice(statuses: dict[Status, int], frames: int) -> list[str]:
 
 
 def _work(counts: Counts | SolidCounts, *, verbose: bool) -> str:
-    told = [
-        counted(n, *NOUNS.get(name, (name.removesuffix("s").replace("_", " "),)))
-        for name, n in counts._asdict().items()
-        if n or verbose
-    ]
+    told = []
+    for name, n in counts._asdict().items():
+        one, many = NOUNS.get(name, (name.removesuffix("s").replace("_", " "), ""))
+        if n or verbose:
+            told.append(counted(n, one, many))
     return ", ".join(told) or "none"
 
 

@@ -16,6 +16,7 @@ from standoff.simulation.system_state import SystemState
 from standoff.wording import counted
 
 Array = NDArray[np.float64]
+Log = NDArray[np.void]
 
 LOGGED = np.dtype(
     [
@@ -92,7 +93,7 @@ class ServoReport(KeepsReadOnly):
     fault: Fault
     notes: tuple[str, ...]
     problem: str
-    log: Array
+    log: Log
 
     def __repr__(self) -> str:
         ticks = counted(self.statistics.ticks, "tick")
@@ -111,10 +112,10 @@ def fault_told(fault: Fault) -> str:
     return f"{fault.name}: {fault.advice}"
 
 
-def in_order(log: Array, ticks: int) -> Array:
+def in_order(log: Array, ticks: int) -> Log:
     """Return the rows of a log that goes round, oldest first, with names, read-only."""
     count = len(log)
     rows = log[:ticks] if ticks <= count else np.roll(log, -(ticks % count), axis=0)
-    kept: Array = rows.copy().view(LOGGED)[:, 0]
+    kept: Log = rows.copy().view(LOGGED)[:, 0]
     kept.flags.writeable = False
     return kept

@@ -109,9 +109,9 @@ def marks_legend(answer: SolidProximity, size: float, unit: str) -> list[Artist]
         label = f"ball inside both, radius {answer.overlap.radius:.6g} {unit}".rstrip()
         handles.append(Line2D([], [], color=BALL_COLOUR, linewidth=1.6, label=label))
     if answer.open:
-        shown = len(answer.open)
-        count = f"{shown}" if answer.counts.open <= shown else f"{shown} of {answer.counts.open}"
-        label = f"open: {counted(count, 'pair')} of pieces, in boxes"
+        shown, of_all = len(answer.open), max(len(answer.open), answer.counts.open)
+        part = "{}" if of_all == shown else f"{shown} of {{}}"
+        label = f"open: {counted(of_all, 'pair', write=part.format)} of pieces, in boxes"
         handles.append(Patch(facecolor="none", edgecolor=OPEN_COLOUR, label=label))
     return handles
 
