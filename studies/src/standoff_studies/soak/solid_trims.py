@@ -16,7 +16,7 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,8 @@ AGREED = 1e-6
 """Length, of parts of about 1: OpenCASCADE's own tolerance is 1e-7, and it may add up."""
 POINTS, DISTANCES = 100, 10
 """Of each part."""
+BOXES = 12
+"""Small ones, from which distances are asked."""
 KINDS = ("box", "wedge", "cylinder", "cone", "ball", "torus")
 OPERATIONS = ("cut", "fuse", "common")
 ROUTES = ("as it is", "brep", "step")
@@ -210,6 +212,13 @@ def judge_points(shape: Any, solid: Any, points: Array, seen: Judged) -> Iterato
                 yield f"distance of {point.tolist()}: {own!r}, by OpenCASCADE {true!r}"
 
 
+@cache
+def _box(number: int) -> tuple[Array, Any]:
+    """Half the sides of a small box, and the box: made once, which takes longer than a distance."""
+    half = np.random.default_rng(number).uniform(0.05, 0.3, 3)
+    return half, so.shapes.box(tuple(2.0 * half))
+
+
 def judge_distances(
     shape: Any, solid: Any, rng: np.random.Generator, seen: Judged
 ) -> Iterator[str]:
@@ -217,14 +226,14 @@ def judge_distances(
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
     from OCP.gp import gp_Pnt
 
-    half = rng.uniform(0.05, 0.3, (DISTANCES, 3))
     places = rng.uniform(-2.0, 2.0, (DISTANCES, 3))
-    for sides, place in zip(half, places, strict=True):
+    for k, place in zip(rng.integers(BOXES, size=DISTANCES).tolist(), places, strict=True):
+        sides, box = _box(k)
         low, high = (place - sides).tolist(), (place + sides).tolist()
         true = between(shape, BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape())
         pose = np.eye(4)
         pose[:3, 3] = place
-        own = so.distance(solid, so.shapes.box(tuple(2.0 * sides)), np.eye(4), pose)
+        own = so.distance(solid, box, np.eye(4), pose)
         seen.distances += 1
         room = AGREED + own.slack
         apart = 0.0 if own.status is so.Status.CONTAINED else max(own.distance, 0.0)
