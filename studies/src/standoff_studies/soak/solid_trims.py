@@ -181,6 +181,23 @@ def vertex(point: Array) -> Any:
     return BRepBuilderAPI_MakeVertex(gp_Pnt(*np.asarray(point).tolist())).Vertex()
 
 
+def on_boundary(shape: Any, point: Array, room: float) -> bool:
+    """Is a point on a part's boundary, by OpenCASCADE's extrema or its classifier? Beside narrow
+    notches the first take points that are on a face for off it."""
+    from OCP.BRepClass3d import BRepClass3d, BRepClass3d_SolidClassifier
+    from OCP.gp import gp_Pnt
+    from OCP.TopAbs import TopAbs_ON
+
+    from standoff.cad.opencascade import explored
+
+    shells = list(explored(shape, "shell")) or [BRepClass3d.OuterShell_s(shape)]
+    if min(between(vertex(point), shell) for shell in shells) <= room:
+        return True
+    classifier = BRepClass3d_SolidClassifier(shape)
+    classifier.Perform(gp_Pnt(*np.asarray(point).tolist()), room)
+    return bool(classifier.State() == TopAbs_ON)
+
+
 def judge_points(shape: Any, solid: Any, points: Array, seen: Judged) -> Iterator[str]:
     """Sides and distances of points of a part; lines of those that are wrong."""
     from OCP.BRepClass3d import BRepClass3d, BRepClass3d_SolidClassifier
@@ -204,8 +221,7 @@ def judge_points(shape: Any, solid: Any, points: Array, seen: Judged) -> Iterato
             seen.sides += 1
             yield f"side of {point.tolist()}: {own!r}, by OpenCASCADE {state * true!r}"
         elif abs(abs(own) - true) > room:
-            off = min(between(vertex(told.nearest[k]), shell) for shell in shells)
-            missed = abs(own) < true and off <= room
+            missed = abs(own) < true and on_boundary(shape, told.nearest[k], room)
             seen.missed += missed
             seen.far += not missed
             if not missed:
@@ -239,7 +255,7 @@ def judge_distances(
         apart = 0.0 if own.status is so.Status.CONTAINED else max(own.distance, 0.0)
         if abs(apart - true) <= room:
             continue
-        missed = 0.0 < apart < true and between(vertex(own.point_a), shape) <= room
+        missed = 0.0 < apart < true and on_boundary(shape, own.point_a, room)
         seen.missed += missed
         seen.far += not missed
         if not missed:
