@@ -19,7 +19,7 @@ import scipy
 
 from standoff.bodies.packing import Chart, Coedge
 from standoff.bodies.tolerances import (
-    DOMAIN_ROUNDOFF,
+    DOMAIN_SPARE,
     PERIOD_ROUNDOFF,
     PIECE_ROUNDOFF,
     SMALLEST_PART,
@@ -84,7 +84,7 @@ def _in_domain(chart: Chart, k: int) -> None:
             c.pcurve = c.pcurve.turned(way, k)
         if k == 0 and chart.period is not None:
             chart.period += way
-    room = DOMAIN_ROUNDOFF * (high - low if np.isfinite(high - low) else most - least)
+    room = DOMAIN_SPARE * (high - low if np.isfinite(high - low) else most - least)
     for c in chart.coedges:
         if not _proven(c, k, low, high, room):
             raise BodyError(
