@@ -221,7 +221,9 @@ def judge_points(shape: Any, solid: Any, points: Array, seen: Judged) -> Iterato
             seen.sides += 1
             yield f"side of {point.tolist()}: {own!r}, by OpenCASCADE {state * true!r}"
         elif abs(abs(own) - true) > room:
-            missed = abs(own) < true and on_boundary(shape, told.nearest[k], room)
+            away = float(np.linalg.norm(told.nearest[k] - point))
+            missed = abs(own) < true and abs(away - abs(own)) <= room
+            missed = missed and on_boundary(shape, told.nearest[k], room)
             seen.missed += missed
             seen.far += not missed
             if not missed:
