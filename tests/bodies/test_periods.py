@@ -13,9 +13,18 @@ from standoff.bodies.packing import Assembled, Chart, Coedge, pack
 from standoff.bodies.periods import PERIOD, in_one_period, is_rim
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
-from standoff.geometry import ConicArc, Cylinder
+from standoff.geometry import (
+    ConicArc,
+    Cylinder,
+    Extrusion,
+    NurbsCurve,
+    NurbsSurface,
+    Revolution,
+    Torus,
+)
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
+from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.body import trimming
@@ -153,3 +162,48 @@ def test_a_curve_that_can_not_be_cut_is_refused(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("standoff.bodies.periods._parts", lambda c, start: [c])
     with pytest.raises(BodyError, match="leaves the period of u"):
         in_one_period(chart)
+
+
+def square(surface: Surface, middle: tuple[float, float], half: float = 0.2) -> Chart:
+    """A face with a circle about a place as its trim."""
+    pieces = ring(*middle, half, half).pieces(0.0, 4.0)
+    return Chart(surface, 0, coedges=[Coedge(0, p, a, b, 1, 0) for p, a, b in pieces])
+
+
+NET = np.moveaxis(np.mgrid[0:3, 0:3, 0:1], 0, -1)[:, :, 0] * 1.0
+ENDS = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]
+PROFILE = NurbsCurve([(1, 0, 0), (2, 0, 1), (1, 0, 2)], ENDS)
+# A surface, the middle of what is on it, and what leads out of its domain.
+DOMAINS: dict[str, tuple[Surface, tuple[float, float], tuple[float, float]]] = {
+    "torus, v": (Torus(2.0, 0.5), (2.0, 1.2), (0.0, 0.3)),
+    "torus, whole turn": (Torus(2.0, 0.5, v0=0.0, v1=PERIOD), (2.0, 6.0), (0.0, 0.3)),
+    "part of a torus, u": (Torus(2.0, 0.5, 0.0, 1.0), (0.7, 0.0), (0.2, 0.0)),
+    "narrow cylinder": (CYLINDER.restricted(0.0, 1.0, -1.0, 1.0), (0.7, 0.0), (0.2, 0.0)),
+    "revolved spline": (Revolution(PROFILE), (2.0, 0.7), (0.0, 0.2)),
+    "extruded spline": (Extrusion(PROFILE, (0, 1, 0)), (0.3, 0.5), (-0.2, 0.0)),
+    "spline, u": (NurbsSurface(NET, ENDS, ENDS), (0.7, 0.5), (0.2, 0.0)),
+    "spline, v": (NurbsSurface(NET, ENDS, ENDS), (0.5, 0.3), (0.0, -0.2)),
+}
+
+
+@pytest.mark.parametrize("name", DOMAINS)
+def test_curves_lie_in_the_domain_of_their_surface(name: str) -> None:
+    surface, (u, v), (du, dv) = DOMAINS[name]
+    chart = square(surface, (u, v))
+    before = [c.pcurve.point(c.first) for c in chart.coedges]
+    in_one_period(chart)
+    assert [c.pcurve.point(c.first) for c in chart.coedges] == before
+    with pytest.raises(BodyError, match="leaves the surface's domain") as error:
+        in_one_period(square(surface, (u + du, v + dv)))
+    assert error.value.part == ("face", 0)
+    for k, angle in enumerate(surface.angles):
+        place = np.array([u, v]) + 3.0 * PERIOD * np.eye(2)[k]
+        away = square(surface, (float(place[0]), float(place[1])))
+        if not angle:
+            with pytest.raises(BodyError, match="leaves the surface's domain"):
+                in_one_period(away)
+            continue
+        in_one_period(away)
+        if not (k == 0 and surface.periodic and surface.domain[1] > 6.0):
+            turned = [c.pcurve.point(c.first)[k] for c in away.coedges]
+            assert turned == pytest.approx([place[k] for place in before], abs=1e-12)

@@ -297,3 +297,45 @@ def from_boundary(shape: Any, points: list[tuple[float, float, float]]) -> list[
         min(BRepExtrema_DistShapeShape(vertex, shell).Value() for shell in shells)
         for vertex in vertices
     ]
+
+
+def as_splines(shape: Any) -> Any:
+    """With every surface and curve as a spline; round ones close."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+
+    return BRepBuilderAPI_NurbsConvert(shape, True).Shape()
+
+
+def spun(points: list[tuple[float, float]]) -> Any:
+    """A closed spline through points (x, z), rotated about the axis z."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
+    from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
+
+    return BRepPrimAPI_MakeRevol(_disc(points), gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1))).Shape()
+
+
+def pulled(points: list[tuple[float, float]], height: float) -> Any:
+    """A closed spline through points (x, z), moved along y."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Vec
+
+    return BRepPrimAPI_MakePrism(_disc(points), gp_Vec(0, height, 0)).Shape()
+
+
+def _disc(points: list[tuple[float, float]]) -> Any:
+    from OCP import collections as arrays
+    from OCP.BRepBuilderAPI import (
+        BRepBuilderAPI_MakeEdge,
+        BRepBuilderAPI_MakeFace,
+        BRepBuilderAPI_MakeWire,
+    )
+    from OCP.GeomAPI import GeomAPI_Interpolate
+    from OCP.gp import gp_Pnt
+
+    places = arrays.HArray1_gp_Pnt(1, len(points))
+    for k, (x, z) in enumerate(points, 1):
+        places.SetValue(k, gp_Pnt(x, 0.0, z))
+    maker = GeomAPI_Interpolate(places, True, 1e-9)
+    maker.Perform()
+    wire = BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(maker.Curve()).Edge()).Wire()
+    return BRepBuilderAPI_MakeFace(wire).Face()

@@ -107,7 +107,7 @@ def test_parts_that_bend_inward_answer_as_solids(tmp_path: Path) -> None:
     np.testing.assert_allclose(apart.distance, 0.5, rtol=1e-9)
 
 
-def test_the_nearer_of_two_rules_is_compared() -> None:
+def test_the_nearer_of_two_rules_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     from standoff.cad.measures import nearest
 
     asked: list[bool] = []
@@ -118,7 +118,10 @@ def test_the_nearer_of_two_rules_is_compared() -> None:
 
     assert nearest(measure, None, 1.005, 0.01) == 1.01
     assert asked == [False]
+    monkeypatch.setattr("standoff.cad.measures.area_of", lambda shape: 64.0)
+    monkeypatch.setattr("standoff.cad.measures._divided", lambda shape, most: most)
     assert nearest(measure, None, 1.001, 1e-6) == 1.0
+    assert asked == [False, False, True, True, True]
 
 
 def test_inches_are_converted_and_told(tmp_path: Path) -> None:

@@ -40,6 +40,67 @@ def test_a_plate_with_holes(tmp_path: Path) -> None:
     assert answer.distance == pytest.approx(2e-3, rel=1e-12)
 
 
+ANGLES = (-90.0, 0.0, 45.0, 180.0, 270.0, 360.0)
+
+
+@pytest.mark.parametrize("first", ANGLES)
+def test_arcs_either_way_round_from_and_to_any_angle(first: float, tmp_path: Path) -> None:
+    """A sector of a disc for each angle at which the arc ends, drawn as an arc and as a bulge of
+    either sign."""
+    turns = [
+        (last - first) % 360.0 for last in ANGLES if (last - first) % 360.0 not in (0.0, 180.0)
+    ]
+
+    def draw(space: Any, document: Any) -> None:
+        for k, turn in enumerate(turns):
+            one, other = (
+                np.round(10.0 * np.array([np.cos(a), np.sin(a)]), 12)
+                for a in np.radians([first, first + turn])
+            )
+            for row, way in enumerate(("arc", "there", "back")):
+                at = np.array([30.0 * k, 30.0 * row])
+                a, b = at + one, at + other
+                if way == "arc":
+                    space.add_arc(at, 10.0, first, (first + turn) % 360.0)
+                    space.add_line(b, at)
+                    space.add_line(at, a)
+                    continue
+                bulge = np.tan(np.radians(turn) / 4.0)
+                corners = [(*a, bulge), (*b, 0.0), (*at, 0.0)]
+                if way == "back":
+                    corners = [(*b, -bulge), (*a, 0.0), (*at, 0.0)]
+                space.add_lwpolyline(corners, format="xyb", close=True)
+
+    solids = read_dxf(saved(tmp_path / "sectors.dxf", draw))
+    areas = sorted(solid.area for solid in solids)
+    assert areas == pytest.approx(sorted(np.radians(t) * 50.0 for t in turns * 3), rel=1e-9)
+
+
+def test_rounded_rectangles_drawn_clockwise(rng: np.random.Generator, tmp_path: Path) -> None:
+    sizes = [(*rng.uniform(2.0, 9.0, 2), float(rng.uniform(0.1, 0.9))) for _ in range(60)]
+
+    def draw(space: Any, document: Any) -> None:
+        bulge = -np.tan(np.pi / 8.0)
+        for k, (a, b, r) in enumerate(sizes):
+            x, y = 12.0 * (k % 8), 12.0 * (k // 8)
+            corners = [
+                (x, y + r, 0.0),
+                (x, y + b - r, bulge),
+                (x + r, y + b, 0.0),
+                (x + a - r, y + b, bulge),
+                (x + a, y + b - r, 0.0),
+                (x + a, y + r, bulge),
+                (x + a - r, y, 0.0),
+                (x + r, y, bulge),
+            ]
+            space.add_lwpolyline(corners, format="xyb", close=True)
+
+    areas = sorted(solid.area for solid in read_dxf(saved(tmp_path / "plates.dxf", draw)))
+    assert areas == pytest.approx(
+        sorted(a * b - (4 - np.pi) * r * r for a, b, r in sizes), rel=1e-9
+    )
+
+
 def test_splines_blocks_and_mirrored_arcs(tmp_path: Path) -> None:
     def draw(space: Any, document: Any) -> None:
         block = document.blocks.new("half")

@@ -115,7 +115,7 @@ def make_charts(faces: Sequence[Face], edges: Sequence[Edge]) -> list[Chart]:
                 ]
             if surface.periodic:
                 _join_angles(chart, edges)
-                in_one_period(chart)
+            in_one_period(chart)
             charts.append(chart)
     return charts
 

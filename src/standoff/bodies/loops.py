@@ -100,8 +100,10 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
         Loops that bound no face: open ones, several side by side, a single one around a surface.
     """
     loops = [_loop(chart, entries, edges) for entries in traced(face, edges, number)]
-    wrong = _against(loops, chart, number)
-    chart.holed = len(loops) > max(sum(loop.turns != 0 for loop in loops), 1)
+    round_ = sum(loop.turns != 0 for loop in loops)
+    whole = not round_ and _closed(chart)
+    wrong = _against(loops, chart, number, whole)
+    chart.holed = whole or len(loops) > max(round_, 1)
     turned = {
         k for loop, against in zip(loops, wrong, strict=True) if against for k in loop.entries
     }
@@ -111,12 +113,12 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
     return 2 * len(turned) > len(face.loop)
 
 
-def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
+def _against(loops: Sequence[Loop], chart: Chart, number: int, whole: bool) -> list[bool]:
     """Which loops run clockwise around the face as they were given."""
+    if whole:
+        return [loop.area > 0.0 for loop in loops]  # holes, all of them
     round_ = [loop for loop in loops if loop.turns]
     collapsed = [c for c in chart.coedges if c.edge < 0]
-    if not round_ and _closed(chart, collapsed):
-        return [loop.area > 0.0 for loop in loops]  # holes, all of them
     if not round_:
         outer = max(loops, key=lambda loop: abs(loop.area))
         sides = [np.stack([p[:-1], p[1:]], 1) for p in map(_points, collapsed)]
@@ -142,10 +144,11 @@ def _against(loops: Sequence[Loop], chart: Chart, number: int) -> list[bool]:
     )
 
 
-def _closed(chart: Chart, collapsed: Sequence[Coedge]) -> bool:
+def _closed(chart: Chart) -> bool:
     """Is a face all of a surface between two collapsed sides that go once around it, such as a
     sphere by longitude and latitude, but for holes?"""
-    around = [abs(c.pcurve.point(c.last)[0] - c.pcurve.point(c.first)[0]) for c in collapsed]
+    ends = [(c, c.first, c.last) for c in chart.coedges if c.edge < 0]
+    around = [abs(c.pcurve.point(b)[0] - c.pcurve.point(a)[0]) for c, a, b in ends]
     return bool(chart.surface.periodic) and round(sum(around) / (2.0 * np.pi)) == 2
 
 

@@ -1,8 +1,11 @@
-"""Charts whose u is an angle: all their trimming curves within one period.
+"""Charts: all their trimming curves within the surface's domain, which shows each point once.
 
-A loop that crosses the period's end is cut there, so that (u, v) is on the face exactly if it is in
-this one period: the kernels bring u into it and need to know nothing else. Only rims of constant v
-stay as they are; there the kernels wrap the angle itself.
+Where u is an angle and the domain all of its turn, a loop that crosses the period's end is cut
+there, so that (u, v) is on the face exactly if it is in this one period: the kernels bring u into
+it and need to know nothing else. Only rims of constant v stay as they are; there the kernels wrap
+the angle itself. No other parameter wraps, such as v round the tube of a torus or either one of a
+spline that closes: there the curves must lie within the domain. Bounds, theorems and the highest
+point of a surface hold over its domain only.
 """
 
 from __future__ import annotations
@@ -15,10 +18,16 @@ import numpy as np
 import scipy
 
 from standoff.bodies.packing import Chart, Coedge
-from standoff.bodies.tolerances import PERIOD_ROUNDOFF, PIECE_ROUNDOFF, SMALLEST_PART
+from standoff.bodies.tolerances import (
+    DOMAIN_SPARE,
+    PERIOD_ROUNDOFF,
+    PIECE_ROUNDOFF,
+    SMALLEST_PART,
+)
 from standoff.errors import BodyError
-from standoff.geometry.bernstein import segment
+from standoff.geometry.bernstein import segments
 from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
+from standoff.geometry.torus import full_turn
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
@@ -29,16 +38,22 @@ SAMPLES, PARTS = 65, 16
 
 
 def in_one_period(chart: Chart) -> None:
-    """Bring the trimming curves of a chart into one period of u, and prove it.
+    """Bring the trimming curves of a chart into one period of its angles and into the surface's
+    domain, and prove it.
 
     Raises
     ------
     BodyError
-        Curves that can't be cut so.
+        Curves that can't be brought there.
     """
-    if all(is_rim(c) for c in chart.coedges):
-        return
-    ranges = [_range(c) for c in chart.coedges]
+    if chart.surface.periodic and not all(is_rim(c) for c in chart.coedges):
+        _cut(chart)
+    for k in (0, 1):
+        _in_domain(chart, k)
+
+
+def _cut(chart: Chart) -> None:
+    ranges = [_range(c, 0) for c in chart.coedges]
     low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
     if high - low > PERIOD + PERIOD_ROUNDOFF:
         low = _start(chart.coedges, ranges)
@@ -46,10 +61,37 @@ def in_one_period(chart: Chart) -> None:
         chart.coedges = [part for c in chart.coedges for part in _parts(c, low)]
     chart.period = 0.5 * (low + high) - 0.5 * PERIOD
     for c in chart.coedges:
-        if not _proven(c, chart.period - PERIOD_ROUNDOFF):
+        if not _proven(c, 0, chart.period, chart.period + PERIOD, PERIOD_ROUNDOFF):
             raise BodyError(
                 f"Face {chart.face}: a trimming curve leaves the period of u that begins at "
                 f"{chart.period:.9g}: cut the face along a line of constant u.",
+                part=("face", chart.face),
+            )
+
+
+def _in_domain(chart: Chart, k: int) -> None:
+    """Prove that u (k = 0) or v stays in its domain, by turns of the chart where it is an angle."""
+    low, high = chart.surface.domain[2 * k : 2 * k + 2]
+    whole = k == 0 and chart.surface.periodic and full_turn(low, high)
+    if whole or not chart.coedges or not np.isfinite([low, high]).any():
+        return
+    angle = chart.surface.angles[k] and np.isfinite([low, high]).all()
+    ranges = [_range(c, k) for c in chart.coedges]
+    least, most = min(r[0] for r in ranges), max(r[1] for r in ranges)
+    way = PERIOD * round(0.5 * (low + high - least - most) / PERIOD) if angle else 0.0
+    if way != 0.0:
+        for c in chart.coedges:
+            c.pcurve = c.pcurve.turned(way, k)
+        if k == 0 and chart.period is not None:
+            chart.period += way
+    room = DOMAIN_SPARE * (high - low if np.isfinite(high - low) else most - least)
+    for c in chart.coedges:
+        if not _proven(c, k, low, high, room):
+            raise BodyError(
+                f"Face {chart.face}: a trimming curve, {'uv'[k]} from {least:.9g} to {most:.9g} "
+                f"with the others, leaves the surface's domain from {low:.9g} to {high:.9g}: give "
+                f"the surface a domain that holds it, or cut the face along a line of constant "
+                f"{'uv'[k]}.",
                 part=("face", chart.face),
             )
 
@@ -62,31 +104,32 @@ def is_rim(c: Coedge) -> bool:
     return bool(abs(slope) == 1.0 and rise == 0.0 and last.tolist() == [0.0, 0.0, 1.0])
 
 
-def _boxes(c: Coedge, first: float, last: float, parts: int) -> tuple[Array, Array]:
-    """(low, high), each (n,), of u along equal parts of a coedge."""
-    ends = np.linspace(first, last, parts + 1)
+def _boxes(c: Coedge, k: int, first: float, last: float) -> tuple[Array, Array]:
+    """(low, high), each (PARTS,), of u (k = 0) or v along equal parts of a coedge."""
+    ends = np.linspace(first, last, PARTS + 1)
     if c.pcurve.kind != L.BEZIER:
         low, high = pcurve_boxes(c.pcurve.kind, c.pcurve.matrix, ends)
-        return low[:, 0], high[:, 0]
+        return low[:, k], high[:, k]
     points = c.pcurve.matrix
-    shares = ((ends - c.first) / (c.last - c.first)).tolist()
-    found = [bezier_box(segment(len(points) - 1, a, b) @ points) for a, b in pairwise(shares)]
-    return np.array([b[0][0] for b in found]), np.array([b[1][0] for b in found])
+    shares = (ends - c.first) / (c.last - c.first)
+    parts = segments(len(points) - 1, shares[:-1], shares[1:]) @ points
+    found = [bezier_box(part) for part in parts]
+    return np.array([b[0][k] for b in found]), np.array([b[1][k] for b in found])
 
 
-def _range(c: Coedge) -> tuple[float, float]:
-    low, high = _boxes(c, c.first, c.last, PARTS)
+def _range(c: Coedge, k: int) -> tuple[float, float]:
+    low, high = _boxes(c, k, c.first, c.last)
     return float(low.min()), float(high.max())
 
 
-def _proven(c: Coedge, low: float) -> bool:
-    """Is u within a period and its roundoff from `low` on, all along a coedge?"""
-    high = low + PERIOD + 2.0 * PERIOD_ROUNDOFF
+def _proven(c: Coedge, k: int, low: float, high: float, room: float) -> bool:
+    """Is u (k = 0) or v between bounds but for `room`, all along a coedge?"""
+    low, high = low - room, high + room
     waiting = [(c.first, c.last)]
     least = SMALLEST_PART * (c.last - c.first)
     while waiting:
         first, last = waiting.pop()
-        lows, highs = _boxes(c, first, last, PARTS)
+        lows, highs = _boxes(c, k, first, last)
         steps = np.linspace(first, last, PARTS + 1)
         out = np.flatnonzero((lows < low) | (highs > high))
         if len(out) and last - first < least:

@@ -37,6 +37,10 @@ the parameter): the roundoff of ends that were computed in two ways."""
 PERIOD_ROUNDOFF: Final = 1e-12
 """Radians by which trimming curves may leave their period: the roundoff of where they are cut."""
 
+DOMAIN_SPARE: Final = 1e-6
+"""Share of a surface's domain by which trimming curves may leave it: what files, and curves fitted
+to their edges, miss. Surfaces go on beyond their domain as what they are there."""
+
 SMALLEST_PART: Final = 1e-8
 """A trimming curve is not divided beyond this fraction of it to prove that it is in its period: the
 hull of a part that begins square to the angle leaves it by the square of its length."""

@@ -32,7 +32,8 @@ def without_seams(solid: Any) -> tuple[Any, int]:
     for face in closed:
         divider = ShapeUpgrade_ClosedFaceDivide(face)
         divider.SetContext(context)
-        divider.SetSurfaceSegmentMode(False)
+        # with surfaces as they are it fails on swept splines that close, and ends the process
+        divider.SetSurfaceSegmentMode(_kind(face).startswith("SurfaceOf"))
         divider.Perform()
         result = divider.Result()
         if not result.IsSame(face):
@@ -66,11 +67,17 @@ def _bounding(face: Any) -> list[Any]:
     return [e for wire in wires for e in explored(wire, "edge") if e.Orientation() not in inner]
 
 
+def _kind(face: Any) -> str:
+    from OCP.BRep import BRep_Tool
+
+    name: str = basis_surface(BRep_Tool.Surface_s(face)).DynamicType().Name()
+    return name.removeprefix("Geom_")
+
+
 def _must_be_cut(face: Any) -> bool:
     from OCP.BRep import BRep_Tool
 
-    geometry = basis_surface(BRep_Tool.Surface_s(face))
-    kind = geometry.DynamicType().Name().removeprefix("Geom_")
+    geometry, kind = basis_surface(BRep_Tool.Surface_s(face)), _kind(face)
     if kind in ANGULAR_U:
         return False
     for edge in seams(face):

@@ -41,8 +41,8 @@ class BezierPcurve(Pcurve):
     def data(self) -> Array:
         return np.concatenate([[len(self.matrix) - 1.0], self.matrix.ravel()])
 
-    def turned(self, angle: float) -> BezierPcurve:
-        shift = np.outer(self.matrix[:, 2], [angle, 0.0, 0.0])
+    def turned(self, angle: float, k: int = 0) -> BezierPcurve:
+        shift = np.outer(self.matrix[:, 2], angle * np.eye(3)[k])
         return BezierPcurve(self.matrix + shift, self.first, self.last)
 
     def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:

@@ -90,10 +90,10 @@ class Pcurve(KeepsReadOnly):
         """(pcurve, first, last) of the parts that a straight line meets at most twice."""
         return [(self, first, last)]
 
-    def turned(self, angle: float) -> Pcurve:
-        """The same curve with u greater by an angle, radians."""
+    def turned(self, angle: float, k: int = 0) -> Pcurve:
+        """The same curve with u (k = 0) or v greater by an angle, radians."""
         if angle == 0.0:
             return self
         matrix = self.matrix.copy()
-        matrix[0] += angle * matrix[2]
+        matrix[k] += angle * matrix[2]
         return Pcurve(self.kind, matrix)

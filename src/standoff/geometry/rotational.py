@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 class Rotational(Surface):
     """A surface whose canonical form is a meridian rotated about the axis z."""
 
+    angles = (True, False)
+
     @abstractmethod
     def meridian(self, v: Interval) -> Interval:
         """(2, 3, n) bounds of rho and z, and of their first and second derivatives by v."""

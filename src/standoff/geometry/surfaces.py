@@ -64,6 +64,8 @@ class Surface(KeepsReadOnly, ABC):
     """Its number in ``standoff.kernels.body.layout``, which also says whether it is `noisy`."""
     periodic: ClassVar[bool]
     """Is u a periodic angle? For some kinds it depends on the domain, and is set per surface."""
+    angles: ClassVar[tuple[bool, bool]] = (False, False)
+    """Are u and v angles, after a turn of which the surface repeats?"""
     projection: ClassVar[Literal["parallel", "central", "axial"] | None]
     """How lines and conic arcs of the surface are projected to (u, v): "parallel" if u and v are
     two of the canonical coordinates, "central" from the origin, "axial" about the axis z, if u is

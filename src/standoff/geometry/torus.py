@@ -63,6 +63,7 @@ class Torus(Rotational):
 
     kind = L.TORUS
     periodic = False
+    angles = (True, True)
     projection = None
     part_of = None
     ruled = False
