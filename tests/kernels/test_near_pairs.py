@@ -60,16 +60,16 @@ class Search:
         self.kept = [x.copy() for x in (layout, numbers, options)]
         pointers = [pointed(x) for x in self.kept]
         solids = K.Solids(*(pointed(np.zeros(1)),) * 6)
+        self.bodies = ints, reals
+        ints_at, reals_at = pointed(ints), pointed(reals)
         self.system = K.System(
-            pointers[0], pointers[1], ints, reals, pointers[2], pointed(self.kept[1]), solids
+            pointers[0], pointers[1], ints_at, reals_at, pointers[2], pointers[1], solids
         )
         self.near, self.near_numbers = G.near_arrays(self.system)
         empty = pointed(np.zeros(1))
-        array = np.zeros(1)
-        self.scratch = K.Scratch(
-            array, empty, empty, empty, empty, array, empty, empty, empty, empty, empty, empty,
-            pointed(self.near), pointed(self.near_numbers),
-        )  # fmt: skip
+        unused = dict.fromkeys(K.Scratch._fields, empty)
+        near = {"near": pointed(self.near), "near_numbers": pointed(self.near_numbers)}
+        self.scratch = K.Scratch(**unused | near)
 
     def tick(self, poses: np.ndarray) -> tuple[bool, list[int]]:
         """(must it visit all, the pairs that it visits) at poses of all bodies."""
