@@ -60,16 +60,16 @@ class Search:
         self.kept = [x.copy() for x in (layout, numbers, options)]
         pointers = [pointed(x) for x in self.kept]
         solids = K.Solids(*(pointed(np.zeros(1)),) * 6)
+        self.bodies = ints, reals
+        ints_at, reals_at = pointed(ints), pointed(reals)
         self.system = K.System(
-            pointers[0], pointers[1], ints, reals, pointers[2], pointed(self.kept[1]), solids
+            pointers[0], pointers[1], ints_at, reals_at, pointers[2], pointers[1], solids
         )
         self.near, self.near_numbers = G.near_arrays(self.system)
         empty = pointed(np.zeros(1))
-        array = np.zeros(1)
-        self.scratch = K.Scratch(
-            array, empty, empty, empty, empty, array, empty, empty, empty, empty, empty, empty,
-            pointed(self.near), pointed(self.near_numbers),
-        )  # fmt: skip
+        unused = dict.fromkeys(K.Scratch._fields, empty)
+        near = {"near": pointed(self.near), "near_numbers": pointed(self.near_numbers)}
+        self.scratch = K.Scratch(**unused | near)
 
     def tick(self, poses: np.ndarray) -> tuple[bool, list[int]]:
         """(must it visit all, the pairs that it visits) at poses of all bodies."""
@@ -131,6 +131,19 @@ def moved(rng: np.random.Generator, poses: list, speeds: np.ndarray, tick: int) 
     return found
 
 
+def farthest_gone(made: sim.System, old: list, new: list) -> tuple[float, float]:
+    """At least and at most, how far a point of a bounded body has gone at the farthest."""
+    least = most = 0.0
+    for body, (R, p), (S, q) in zip(made.bodies, old, new, strict=True):
+        if isinstance(body.body, so.Body) and body.body.bounded:
+            own = body.body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
+            half = body.body.reals[L.BOX_HALF : L.BOX_HALF + 3] + body.body.radius
+            shift = float(np.linalg.norm(S @ own + q - R @ own - p))
+            turned = float(np.linalg.norm(S - R) * np.linalg.norm(half))
+            least, most = max(least, shift), max(most, shift + turned)
+    return least, most
+
+
 @pytest.mark.parametrize("all_pairs", [True, False])
 def test_no_pair_is_missed(all_pairs: bool) -> None:
     rng = np.random.default_rng(5)
@@ -140,19 +153,24 @@ def test_no_pair_is_missed(all_pairs: bool) -> None:
     poses = [(np.eye(3), rng.uniform(-2.0, 2.0, 3)) for _ in range(n)]
     speeds = 0.01 * rng.normal(size=(n, 3))
     before: set[int] = set()
-    counted = []
+    counted, looked_at_all = [], []
     for tick in range(250):
-        poses = moved(rng, poses, speeds, tick)
+        old, poses = poses, moved(rng, poses, speeds, tick)
         everything, seen = search.tick(poses)
-        assert everything == (tick == 0)
+        # a body that goes farther than the horizon may have gone through any other
+        least, most = farthest_gone(made, old, poses)
+        assert everything or (tick > 0 and least <= 1.001 * WITHIN)
+        assert not everything or tick == 0 or most > WITHIN
+        looked_at_all.append(everything)
         assert seen == sorted(set(seen))
         near = near_by_force(made, poses)
         assert near <= set(seen)
         # and those that are no longer near are seen to be FAR
-        assert before <= set(seen) or everything
-        before = set(seen) if everything else near
+        assert before <= set(seen) or tick == 0
+        before = set(seen) if tick == 0 else near
         counted.append(len(seen))
     assert np.median(counted) < 0.6 * len(made.pairs)
+    assert 0.2 < np.mean(looked_at_all) < 0.8
 
 
 def test_a_motion_that_a_frame_refuses_is_shown_to_all_pairs() -> None:

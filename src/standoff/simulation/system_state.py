@@ -137,8 +137,9 @@ class SystemState(KeepsReadOnly):
 
     @property
     def uncertified(self) -> int:
-        """How many answers of the trackers since the start were not certified."""
-        return int(self.data[K.S_UNCERTIFIED])
+        """How many answers of the trackers since the start were not certified, and in how many
+        ticks a pair may have crossed (`crossings`): what is behind these is not known."""
+        return int(self.data[K.S_UNCERTIFIED]) + sum(each.ticks for each in self.crossings)
 
     @property
     def crossings(self) -> tuple[Crossing, ...]:

@@ -107,26 +107,37 @@ class Solids(NamedTuple):
 
 
 class System(NamedTuple):
-    """A packed system: arrays where parts of them are pointed to, else pointers."""
+    """A packed system, as pointers: a reference to an array is counted at every call."""
 
-    layout: Any  # pointer
-    numbers: Any  # pointer
-    ints: Any  # array: of all bodies, one behind the other
-    reals: Any  # array
-    options: Any  # pointer: N_OPTIONS numbers a pair
-    coupler: Any  # pointer: the numbers of a coupler (``coupler_arrays``), where there is one
+    layout: Any
+    numbers: Any
+    ints: Any  # of all bodies, one behind the other
+    reals: Any
+    options: Any  # N_OPTIONS numbers a pair
+    coupler: Any  # the numbers of a coupler (``coupler_arrays``), where there is one
     solids: Any
 
 
-class Scratch(NamedTuple):
-    """What one tick writes over: pointers, but for the two arrays."""
+class Drives(NamedTuple):
+    """What drives bodies and a coupler, as pointers: a row of motions a half tick, and how many
+    numbers a row has; readings, and how many; and the time on their clock (`pull_tool`)."""
 
-    stage: Any  # array: rows of the bodies at a stage, as a state has them; then at the start
+    table: Any
+    width: Any
+    readings: Any
+    count: Any
+    clock: Any
+
+
+class Scratch(NamedTuple):
+    """What one tick writes over, as pointers."""
+
+    stage: Any  # rows of the bodies at a stage, as a state has them; then at the start
     rates: Any  # of one stage, and behind them as they were when it began
     total: Any  # of the whole step
     first: Any  # of its first stage
     loads: Any  # N_LOAD numbers a body, then N_EASED a body, then one
-    motion: Any  # array: N_MOTION numbers
+    motion: Any  # N_MOTION numbers
     touch: Any  # N_TOUCH numbers a pair
     spots: Any  # see ``flat_contact``
     told: Any  # what spots push, where there is room for it

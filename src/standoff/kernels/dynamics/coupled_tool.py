@@ -2,7 +2,7 @@
 
 from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import add, dot
-from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.dynamics.arrays import (
     I_READING,
     I_TOOL,
@@ -33,18 +33,17 @@ def tool_motion(system, rows, first):
 
 
 @kernel
-def pull_tool(system, state, readings, tick, h, clock, scratch):
+def pull_tool(system, state, drives, tick, h, scratch):
     """The coupler's part of a tick: its wrenches, by a reading if one is due.
 
-    `clock` is the time on the clock of the readings, nan if the coupler's own is used.
+    Their clock is nan if the coupler's own is used.
     """
     every = system.layout[I_READING]
-    rows = readings.shape[0] // N_READING
-    row = N_READING * min(tick // every, rows - 1)
-    moment = Moment(h, clock, tick % every == 0, every * h)
+    row = N_READING * min(tick // every, drives.count - 1)
+    moment = Moment(h, drives.clock, tick % every == 0, every * h)
     put_motion(tool_motion(system, state, body_row(0)), scratch.motion, 0)
-    own = pointer(state, coupler_row(system))
-    couple(system.coupler, own, pointer(readings, row), pointer(scratch.motion, 0), moment)
+    own = ahead(state, coupler_row(system))
+    couple(system.coupler, own, ahead(drives.readings, row), scratch.motion, moment)
 
 
 @kernel
@@ -76,4 +75,4 @@ def book_pull(system, state, h, before):
 def stored_in_coupler(system, state):
     """Energy in the coupler's springs."""
     tool = tool_motion(system, state, body_row(0))
-    return stored_in(system.coupler, pointer(state, coupler_row(system)), tool)
+    return stored_in(system.coupler, ahead(state, coupler_row(system)), tool)

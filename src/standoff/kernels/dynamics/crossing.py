@@ -15,7 +15,7 @@ from standoff.kernels.algebra.rigid import read_vector, relative_pose
 from standoff.kernels.algebra.turns import turn_norm
 from standoff.kernels.algebra.vectors import axpy, dot, norm, sub
 from standoff.kernels.body.layout import UNBOUNDED
-from standoff.kernels.compiler.decorators import ahead, kernel, pointer, shared
+from standoff.kernels.compiler.decorators import ahead, kernel, shared
 from standoff.kernels.dynamics.arrays import (
     B_REACH,
     N_BODY,
@@ -58,6 +58,9 @@ class End(NamedTuple):
     gap: Any
     parted: Any
     normal: Any
+
+
+UNSEEN_END = End(0.0, False, (0.0, 0.0, 0.0))
 
 
 @kernel
@@ -119,9 +122,7 @@ def boxes_at(system, pair, rows, scratch):
     """How far the boxes of two bodies prove them apart where they were."""
     m = scratch.motion
     write_motion(system, pair, rows, body_row(0), m)
-    return boxes_apart(
-        packed_pair(system, pair), relative_pose(pointer(m, POSE_A), pointer(m, POSE_B))
-    )
+    return boxes_apart(packed_pair(system, pair), relative_pose(ahead(m, POSE_A), ahead(m, POSE_B)))
 
 
 @kernel
@@ -171,11 +172,11 @@ def begin_crossing(system, pair, state, of_solids):
 
 
 @kernel
-def goes_far_enough(system, pair, begun, scratch):
-    """Could a pair have crossed by what its bodies have gone in a tick, however they stand now?"""
+def goes_far_enough(system, pair, scratch):
+    """Could a pair have crossed by what its bodies have gone in a tick, however they stand?"""
     a, b = bodies_of(system, pair)
     most = system.numbers[pair_numbers(system, pair) + P_UNSEEN]
-    return scratch.ways[N_WAY * a] + scratch.ways[N_WAY * b] > begun.gap + 2.0 * most
+    return scratch.ways[N_WAY * a] + scratch.ways[N_WAY * b] > 2.0 * most
 
 
 @shared

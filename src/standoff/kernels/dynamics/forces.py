@@ -14,7 +14,7 @@ from standoff.kernels.algebra.rigid import (
 )
 from standoff.kernels.algebra.vectors import add, axpy, cross, dot, norm, rotate, scale, sub
 from standoff.kernels.body.layout import RADIUS
-from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.dynamics.arrays import (
     B_FLATS,
     N_BODY,
@@ -96,8 +96,8 @@ def velocity_between(motion, x):
 @kernel
 def moving_pair(motion):
     """B's motion seen from A, of a row of numbers."""
-    a, b = pointer(motion, POSE_A), pointer(motion, POSE_B)
-    v, w = relative_twist(a, b, pointer(motion, TWIST_A), pointer(motion, TWIST_B))
+    a, b = ahead(motion, POSE_A), ahead(motion, POSE_B)
+    v, w = relative_twist(a, b, ahead(motion, TWIST_A), ahead(motion, TWIST_B))
     return Motion(relative_pose(a, b), v, w)
 
 

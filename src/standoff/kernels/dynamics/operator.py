@@ -42,7 +42,7 @@ METHODS = (*NAMES, "semi-implicit")
 
 
 @kernel
-def place_bodies(system, state, s, rates, table, row, scratch):
+def place_bodies(system, state, s, rates, drives, row, scratch):
     """The bodies at a stage, a time s along their rates; those driven, by a row of the table."""
     for body in range(n_bodies(system)):
         o = body_row(body)
@@ -50,11 +50,11 @@ def place_bodies(system, state, s, rates, table, row, scratch):
             along_rates(state, o, s, rates, body_rates(body), scratch.stage, o)
         else:
             stand(state, o, scratch.stage, o)
-    drive(system, table, row, scratch.stage)
+    drive(system, drives, row, scratch.stage)
 
 
 @kernel
-def step_explicit(system, state, h, table, tick, work, scratch):
+def step_explicit(system, state, h, drives, tick, work, scratch):
     """A step of a Runge-Kutta method: its rates, weighted, into `total`; those of its first stage
     into `first`.
     """
@@ -66,7 +66,7 @@ def step_explicit(system, state, h, table, tick, work, scratch):
         c = NODES[method, stage]
         s = c * h
         # half ticks are the only nodes between
-        place_bodies(system, state, s, scratch.rates, table, 2 * tick + int(2.0 * c), scratch)
+        place_bodies(system, state, s, scratch.rates, drives, 2 * tick + int(2.0 * c), scratch)
         held = stage > 0 and not system.layout[I_INSIDE]
         stage_of(system, state, s, held, scratch.rates, work, scratch)
         for k in range(count):
@@ -80,12 +80,12 @@ def step_explicit(system, state, h, table, tick, work, scratch):
 
 
 @kernel
-def step_stiff(system, state, h, table, tick, work, scratch):
+def step_stiff(system, state, h, drives, tick, work, scratch):
     """The semi-implicit step; the tracker's rates are those of the start with the new twists."""
     count = n_rates(system)
     for k in range(count):
         scratch.rates[k] = 0.0
-    place_bodies(system, state, 0.0, scratch.rates, table, 2 * tick, scratch)
+    place_bodies(system, state, 0.0, scratch.rates, drives, 2 * tick, scratch)
     stage_of(system, state, 0.0, False, scratch.rates, work, scratch)
     for k in range(count):
         scratch.total[k], scratch.first[k] = scratch.rates[k], scratch.rates[k]
@@ -101,13 +101,13 @@ def step_stiff(system, state, h, table, tick, work, scratch):
 
 
 @kernel
-def step_bodies(system, state, h, table, tick, work, scratch):
+def step_bodies(system, state, h, drives, tick, work, scratch):
     """One tick of bodies and energies, in place; the tracker's rates are left in the scratch."""
     if system.layout[I_METHOD] == SEMI_IMPLICIT:
-        step_stiff(system, state, h, table, tick, work, scratch)
+        step_stiff(system, state, h, drives, tick, work, scratch)
     else:
-        step_explicit(system, state, h, table, tick, work, scratch)
-    drive(system, table, 2 * tick + 2, scratch.stage)
+        step_explicit(system, state, h, drives, tick, work, scratch)
+    drive(system, drives, 2 * tick + 2, scratch.stage)
     exchange(scratch.stage, state, scratch.ways, system)
     for body in range(n_bodies(system)):
         if kind_of(system, body) == FREE:

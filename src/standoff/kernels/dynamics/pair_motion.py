@@ -1,6 +1,6 @@
 """A pair of a system: its packed bodies, and its poses and twists as the tracker reads them."""
 
-from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.dynamics.arrays import (
     B_INTS,
     B_REALS,
@@ -19,10 +19,10 @@ def packed_pair(system, pair):
     a, b = bodies_of(system, pair)
     row_a, row_b = body_ints(a), body_ints(b)
     return Pair(
-        pointer(system.ints, system.layout[row_a + B_INTS]),
-        pointer(system.reals, system.layout[row_a + B_REALS]),
-        pointer(system.ints, system.layout[row_b + B_INTS]),
-        pointer(system.reals, system.layout[row_b + B_REALS]),
+        ahead(system.ints, system.layout[row_a + B_INTS]),
+        ahead(system.reals, system.layout[row_a + B_REALS]),
+        ahead(system.ints, system.layout[row_b + B_INTS]),
+        ahead(system.reals, system.layout[row_b + B_REALS]),
     )
 
 

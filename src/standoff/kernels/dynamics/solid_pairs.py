@@ -10,7 +10,7 @@ from math import inf
 
 from standoff.kernels.algebra.rigid import read_rotation, read_vector, relative_pose
 from standoff.kernels.algebra.vectors import add, axpy, norm, rotate
-from standoff.kernels.compiler.decorators import ahead, kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.dynamics.arrays import (
     B_SOLID,
     I_SOLIDS,
@@ -185,8 +185,8 @@ def look_deeper(b, kept, best):
 @kernel
 def find_places(system, pair, state, counts, scratch):
     """The places of a pair of solids where its bodies are now; their poses are in the motion."""
-    m, kept = scratch.motion, pointer(state, kept_row(system, pair))
-    pose = relative_pose(pointer(m, POSE_A), pointer(m, POSE_B))
+    m, kept = scratch.motion, ahead(state, kept_row(system, pair))
+    pose = relative_pose(ahead(m, POSE_A), ahead(m, POSE_B))
     best = scratch.contact
     ask_contacts(system, pair, pose, best)
     for k in range(N_COUNT_SLOTS):
@@ -205,13 +205,13 @@ def track_solids(system, pair, state, counts, scratch):
     m = scratch.motion
     write_motion(system, pair, state, body_row(0), m)
     for side, why in ((POSE_A, BAD_POSE_A), (POSE_B, BAD_POSE_B)):
-        if not is_pose(pointer(m, side)):
+        if not is_pose(ahead(m, side)):
             return why
-    kept = pointer(state, kept_row(system, pair))
+    kept = ahead(state, kept_row(system, pair))
     made, count, before = kept[F_MADE], int(kept[F_SPOTS]), pose_at(kept)
     find_places(system, pair, state, counts, scratch)
-    out = pointer(state, pair_row(system, pair) + N_STATE)
-    tell_pair(kept, scratch.contact, pointer(m, POSE_A), out)
+    out = ahead(state, pair_row(system, pair) + N_STATE)
+    tell_pair(kept, scratch.contact, ahead(m, POSE_A), out)
     state[S_JUMPS] += kept[F_ENDED]
     if made > 0.0:
         stiffness = system.numbers[pair_numbers(system, pair) + P_STIFFNESS]
@@ -279,7 +279,7 @@ def touch_solids(system, pair, state, rows, first, scratch):
     lose."""
     clear_touch(scratch, pair)
     write_motion(system, pair, rows, first, scratch.motion)
-    motion, kept = scratch.motion, pointer(state, kept_row(system, pair))
+    motion, kept = scratch.motion, ahead(state, kept_row(system, pair))
     R, origin = read_rotation(motion, POSE_A), read_vector(motion, POSE_A + 9)
     lost = 0.0
     for k in range(int(kept[F_SPOTS])):

@@ -2,7 +2,7 @@
 
 from standoff.kernels.algebra.rigid import read_vector
 from standoff.kernels.algebra.vectors import scale
-from standoff.kernels.compiler.decorators import kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, kernel
 from standoff.kernels.dynamics.arrays import (
     B_DRIVEN,
     E_SLOWED,
@@ -70,7 +70,7 @@ def touch_tracked(system, pair, state, rows, first, scratch):
         return 0.0
     if is_of_solids(system, pair):
         return touch_solids(system, pair, state, rows, first, scratch)
-    before = read_state(pointer(state, pair_row(system, pair)))
+    before = read_state(ahead(state, pair_row(system, pair)))
     write_motion(system, pair, rows, first, scratch.motion)
     pose, n = moving_pair(scratch.motion).pose, before.normal
     packed = packed_pair(system, pair)
@@ -85,7 +85,7 @@ def touch_ahead(system, pair, state, s, rates, work, scratch):
     """A pair's contact at a stage, a time s along its rates; its new rates are written in their
     place. Returns the power that it loses.
     """
-    before = read_state(pointer(state, pair_row(system, pair)))
+    before = read_state(ahead(state, pair_row(system, pair)))
     write_motion(system, pair, scratch.stage, body_row(0), scratch.motion)
     motion = moving_pair(scratch.motion)
     packed = packed_pair(system, pair)
@@ -105,7 +105,7 @@ def touch_ahead(system, pair, state, s, rates, work, scratch):
 @kernel
 def renew_rates(system, pair, state, rates, work, scratch):
     """A pair's rates at the start, but with the twists of the bodies in the scratch."""
-    before = read_state(pointer(state, pair_row(system, pair)))
+    before = read_state(ahead(state, pair_row(system, pair)))
     write_motion(system, pair, scratch.stage, body_row(0), scratch.motion)
     renewed = moving_pair(scratch.motion)
     motion = Motion(before.motion.pose, renewed.v, renewed.w)
@@ -180,10 +180,10 @@ def stage_of(system, state, s, held, rates, work, scratch):
 
 
 @kernel
-def drive(system, table, row, rows):
+def drive(system, drives, row, rows):
     """Set the bodies that are driven to a row of their motions, (pose, v, w) each, world."""
     for body in range(n_bodies(system)):
         column = system.layout[body_ints(body) + B_DRIVEN]
         if column >= 0:
             for k in range(N_BODY):
-                rows[body_row(body) + k] = table[row, N_DRIVEN * column + k]
+                rows[body_row(body) + k] = drives.table[drives.width * row + N_DRIVEN * column + k]

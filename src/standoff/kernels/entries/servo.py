@@ -8,7 +8,7 @@ allocates only before its first tick.
 import numpy as np
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, ROWS, WRITE, WRITE_INTS
 from standoff.kernels.compiler.shared_memory import load_relaxed
 from standoff.kernels.dynamics.arrays import (
@@ -70,6 +70,7 @@ from standoff.kernels.dynamics.servo_arrays import (
 from standoff.kernels.dynamics.solid_pairs import begin_solids
 from standoff.kernels.entries.simulation import (
     SYSTEM,
+    drives_of,
     keep_alive,
     pointed,
     scratch_for,
@@ -108,13 +109,14 @@ def read_device(plan, given, box, tick, seconds, seen, reading):
 
 
 @kernel
-def move_bodies(system, state, drives, tick, begun, work, scratch):
+def move_bodies(system, state, given, tick, begun, work, scratch):
     """The steps of one tick of the loop; FINE, or what a tracker refuses."""
     h, steps = system.numbers[STEP], system.layout[I_READING]
-    table, reading, seconds = drives
+    table, reading, seconds = given
     for k in range(steps):
         step = tick * steps + k
-        tick_bodies(system, state, h, (table, reading, seconds + k * h), step, work, scratch)
+        drives = drives_of(table, reading, seconds + k * h)
+        tick_bodies(system, state, h, drives, step, work, scratch)
         state[S_TIME] = begun + (step + 1) * h
         # the whole state is told after the last step of a tick
         why = track_pairs(system, state, h, (step, k == steps - 1, steps > 1), work, scratch)
@@ -221,9 +223,10 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
     moment, answered = np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64)
     reading = np.zeros(N_READING)
     reading[G_FAULT] = MISSING
-    begin_solids(system, state, work.counts, scratch)
-    joined = pointer(state, coupler_row(system))
-    begun = state[S_TIME]
+    live = pointer(state, 0)
+    begin_solids(system, live, work.counts, scratch)
+    joined = ahead(live, coupler_row(system))
+    begun = live[S_TIME]
     asleep = time_asleep(plan, asked, moment)
     last = now(plan, asked, moment)
     deadline = last + plan[V_PERIOD]
@@ -242,16 +245,16 @@ def serve(packed, numbers, state, plan, commands, given, boxes, measured):
         tallies[Y_FRESH] += seen != before
         if not plan[V_EMPTY]:
             drives = (given[0], reading, seconds)
-            if move_bodies(system, state, drives, tick, begun, work, scratch) != FINE:
+            if move_bodies(system, live, drives, tick, begun, work, scratch) != FINE:
                 ended = BROKEN
                 break
         late = start - deadline
-        tell(system, numbers, tallies, state, (tick, start, late, spent), RUNNING, outbox)
+        tell(system, numbers, tallies, live, (tick, start, late, spent), RUNNING, outbox)
         spent = now(plan, asked, moment) - start
-        deadline = book(system, state, plan, measured, (tick, start, late, spent), last)
+        deadline = book(system, live, plan, measured, (tick, start, late, spent), last)
         last, tick = start, tick + 1
     rest(system.coupler, joined)
-    tell(system, numbers, tallies, state, (tick, last, 0, spent), ended, outbox)
+    tell(system, numbers, tallies, live, (tick, last, 0, spent), ended, outbox)
     keep_alive(arrays, near, counts, events)
     return ended
 

@@ -5,7 +5,7 @@ one tick of a virtual coupler by itself.
 import numpy as np
 from numba import types
 
-from standoff.kernels.compiler.decorators import entry, kernel, pointer
+from standoff.kernels.compiler.decorators import ahead, entry, kernel, pointer
 from standoff.kernels.compiler.entry import INT, INTS, READ, REAL, ROWS, WRITE
 from standoff.kernels.dynamics.arrays import (
     FREE,
@@ -21,6 +21,7 @@ from standoff.kernels.dynamics.arrays import (
     T_STORED,
     TOLD,
     TOLD_HEADER,
+    Drives,
     Scratch,
     Solids,
     System,
@@ -42,8 +43,10 @@ from standoff.kernels.dynamics.coupled_tool import (
     stored_in_coupler,
 )
 from standoff.kernels.dynamics.coupler import Moment, couple
+from standoff.kernels.dynamics.coupler_arrays import N_READING
 from standoff.kernels.dynamics.crossing import (
     N_WAY,
+    UNSEEN_END,
     begin_crossing,
     book_crossing,
     goes_far_enough,
@@ -114,12 +117,12 @@ def scratch_for(system, told):
 @kernel
 def pointed(arrays, near):
     return Scratch(
-        arrays[0],
+        pointer(arrays[0], 0),
         pointer(arrays[1], 0),
         pointer(arrays[2], 0),
         pointer(arrays[3], 0),
         pointer(arrays[4], 0),
-        arrays[5],
+        pointer(arrays[5], 0),
         pointer(arrays[6], 0),
         pointer(arrays[7], 0),
         pointer(arrays[11], 0),
@@ -146,7 +149,7 @@ def keep_alive(arrays, near, counts, log):
 def work_for(system, pair, state, counts, log, scratch):
     """What a pair's frame writes on: its kept polytope stands in the state, where any are kept."""
     at = polytope_row(system, pair)
-    own = pointer(state, at) if at > 0 else scratch.polytope
+    own = ahead(state, at) if at > 0 else scratch.polytope
     if at == 0:
         own[N_VERTICES] = 0.0
     return Work(counts, log, own, own)
@@ -172,7 +175,7 @@ def track_pair(system, pair, state, h, work, scratch):
         return why
     write_motion(system, pair, state, body_row(0), scratch.motion)
     packed, options = packed_pair(system, pair), options_of(system, pair)
-    inputs = inputs_at(pointer(scratch.motion, 0), True)
+    inputs = inputs_at(scratch.motion, True)
     why = refused(packed, inputs)
     if why != FINE:
         return why
@@ -181,7 +184,7 @@ def track_pair(system, pair, state, h, work, scratch):
         write_numbers(change_of(system, pair, h, scratch.total), change, CHANGE)
         write_numbers(change_of(system, pair, h, scratch.first), change, FIRST_CHANGE)
         inputs = with_change(inputs, change)
-    kept, out = pointer(state, o), pointer(state, o + N_STATE)
+    kept, out = ahead(state, o), ahead(state, o + N_STATE)
     own = work_for(system, pair, state, work.counts, work.events, scratch)
     frame(packed, inputs, h, options, kept, out, own)
     book_answer(state, o)
@@ -205,11 +208,12 @@ def track_pairs(system, state, h, told, work, scratch):
         if by_tree:
             catch_up(system, pair, state, h, tick, scratch)
         of_solids = is_of_solids(system, pair)
-        begun = begin_crossing(system, pair, state, of_solids)
+        looked_at = goes_far_enough(system, pair, scratch)
+        begun = begin_crossing(system, pair, state, of_solids) if looked_at else UNSEEN_END
         why = track_pair(system, pair, state, h, work, scratch)
         if why != FINE:
             return why
-        if goes_far_enough(system, pair, begun, scratch):
+        if looked_at:
             book_crossing(system, pair, state, begun, of_solids, scratch)
     return FINE
 
@@ -248,14 +252,12 @@ def account(system, state, row, scratch, steps):
 
 @kernel
 def tick_bodies(system, state, h, drives, tick, work, scratch):
-    """One tick of coupler, bodies and energies; `drives` are driven motions, readings, and the time
-    on the clock of these (`pull_tool`)."""
-    table, readings, clock = drives
+    """One tick of coupler, bodies and energies."""
     power = 0.0
     if coupled(system):
-        pull_tool(system, state, readings, tick, h, clock, scratch)
+        pull_tool(system, state, drives, tick, h, scratch)
         power = power_of_pull(system, state)
-    step_bodies(system, state, h, table, tick, work, scratch)
+    step_bodies(system, state, h, drives, tick, work, scratch)
     if coupled(system):
         book_pull(system, state, h, power)
 
@@ -274,8 +276,21 @@ def system_of(packed):
         pointer(solids[5], 0),
     )
     return System(
-        pointer(layout, 0), pointer(numbers, 0), ints, reals, pointer(options, 0), coupler, x
+        pointer(layout, 0),
+        pointer(numbers, 0),
+        pointer(ints, 0),
+        pointer(reals, 0),
+        pointer(options, 0),
+        coupler,
+        x,
     )
+
+
+@kernel
+def drives_of(table, readings, clock):
+    """What drives a system, by pointers, of its arrays."""
+    count = readings.shape[0] // N_READING
+    return Drives(pointer(table, 0), table.shape[1], pointer(readings, 0), count, clock)
 
 
 # Boundaries, leaves and trees, directions from vertices: integers and numbers of each.
@@ -305,24 +320,24 @@ def run_system(packed, state, drives, every, records, told):
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
     h = system.numbers[STEP]
-    begun = state[S_TIME]
-    begin_solids(system, state, work.counts, scratch)
+    begun, live = state[S_TIME], pointer(state, 0)
+    begin_solids(system, live, work.counts, scratch)
     width = states.shape[1]  # all but what is kept beside it
     states[0, :] = state[:width]
-    account(system, state, accounts[0], scratch, True)
-    table, readings = drives
+    account(system, live, accounts[0], scratch, True)
+    given = drives_of(drives[0], drives[1], np.nan)
     for tick in range(every * (states.shape[0] - 1)):
-        tick_bodies(system, state, h, (table, readings, np.nan), tick, work, scratch)
-        state[S_TIME] = begun + (tick + 1) * h
+        tick_bodies(system, live, h, given, tick, work, scratch)
+        live[S_TIME] = begun + (tick + 1) * h
         recorded = (tick + 1) % every == 0
-        why = track_pairs(system, state, h, (tick, recorded, every > 1), work, scratch)
+        why = track_pairs(system, live, h, (tick, recorded, every > 1), work, scratch)
         if why != FINE:
             keep_alive(arrays, near, counts, log)
             return tick, why
         if recorded:
             row = (tick + 1) // every
             states[row, :] = state[:width]
-            account(system, state, accounts[row], scratch, True)
+            account(system, live, accounts[row], scratch, True)
     keep_alive(arrays, near, counts, log)
     return -1, FINE
 
@@ -350,19 +365,20 @@ def load_system(packed, state, loads, row):
     counts = np.zeros(N_COUNT_SLOTS, dtype=np.int64)
     log = np.zeros(MAX_EVENTS * EVENT_COLUMNS)
     work = Work(pointer(counts, 0), pointer(log, 0), scratch.polytope, scratch.polytope)
-    begin_solids(system, state, work.counts, scratch)
+    live = pointer(state, 0)
+    begin_solids(system, live, work.counts, scratch)
     for pair in range(n_pairs(system)):
-        why = track_pair(system, pair, state, system.numbers[STEP], work, scratch)
+        why = track_pair(system, pair, live, system.numbers[STEP], work, scratch)
         if why != FINE:
             return why
-    account(system, state, row, scratch, False)
+    account(system, live, row, scratch, False)
     clear_loads(system, scratch)
     lost, given = 0.0, 0.0
     for pair in range(n_pairs(system)):
-        lost += touch_tracked(system, pair, state, state, body_row(0), scratch)
+        lost += touch_tracked(system, pair, live, live, body_row(0), scratch)
     for body in range(n_bodies(system)):
         if kind_of(system, body) != FREE:
-            given -= power(body, state, body_row(body), scratch.loads)
+            given -= power(body, live, body_row(body), scratch.loads)
     end = N_LOAD * n_bodies(system)
     for k in range(end):
         loads[k] = scratch.loads[k]
