@@ -90,9 +90,10 @@ def drag(
 
     for tries in range(10):
         until(drawn)
+        tab.page.wait_for_timeout(500 * tries)  # the scene is being turned back
         start = handle.position + 0.8 * handle.scale * along
         mouse.move(*on_screen(page, start))
-        tab.page.wait_for_timeout(500 * (1 + tries))
+        tab.page.wait_for_timeout(500)
         mouse.down()
         for part in np.linspace(0.0, length, 8):
             mouse.move(*on_screen(page, start + part * along))
