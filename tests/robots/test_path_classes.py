@@ -9,6 +9,7 @@ from scipy.interpolate import BPoly, BSpline, CubicSpline, NdPPoly, PPoly, make_
 
 import standoff as so
 from robots.arms import arm
+from standoff.robots.motions import motions_of
 from standoff.robots.paths import FunctionPath, joint_path
 from standoff_studies.soak import robot_paths
 
@@ -124,6 +125,16 @@ def test_a_function_s_speeds_are_those_of_the_package_s_velocity() -> None:
         robot.certify(slow)
     with pytest.raises(so.StandoffError, match=r"velocity 2 is .* given as 0.5"):
         robot.certify(FunctionPath(drives, 3.0, [1.0, 0.0, 0.5]))
+
+
+def test_a_base_goes_no_farther_at_least_than_along_the_line() -> None:
+    """What drives straight and then turns has gone less than along Pinocchio's arc between both."""
+    robot = planar((0.0, 2.0))
+    start, stop = np.array([0.0, 0.0, 1.0, 0.0]), np.array([1.0, 0.0, np.cos(2.5), np.sin(2.5)])
+    way = robot.kinematics.difference(start, stop)
+    assert np.linalg.norm(way[:2]) > 1.3
+    ways = motions_of(robot.joints).least_ways(np.array([start, stop]), way[None])
+    assert ways[0] == pytest.approx([1.0, 0.0, 2.5])
 
 
 @pytest.mark.parametrize(

@@ -80,6 +80,49 @@ def test_what_is_damaged_is_refused_by_its_element(tmp_path: Path, name: str) ->
         read(tmp_path, text)
 
 
+BALL = '<sphere radius=".1" /></geometry></collision>'
+MISREAD = {
+    "no geometry": (
+        BALL,
+        "<capsule /></geometry></collision>",
+        "link 'a': <collision> 0 .* is not in what",
+    ),
+    "a size": (BOX, 'box size=".1 .2 .4"', "link 'b': <collision> 0 .* is not what"),
+    "a kind": (CYLINDER, 'sphere radius=".1"', "link 'c': <collision> 0 .* is not what"),
+    "a place": ('xyz="0 0 2"', 'xyz="0 0 2.001"', "link 'c': <collision> 0 .* is not what"),
+    "one more": (
+        "</collision>",
+        f"</collision><collision><geometry><{BOX}/></geometry></collision>",
+        "the file does not have: a_1",
+    ),
+    "a joint's place": ('xyz="1 0 0"', 'xyz="1 0 0.001"', "joint 'j' is not what"),
+    "an axis": ('axis xyz="0 0 1"', 'axis xyz="0 1 1"', "joint 'j' is not what"),
+    "a link": ('"c"', '"z"', "link 'c' is not in what"),
+}
+
+
+@pytest.mark.parametrize("name", MISREAD)
+def test_what_pinocchio_reads_otherwise_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """It is given another text than that of the file."""
+    old, new, said = MISREAD[name]
+    model, geometry = pin.buildModelFromXML, pin.buildGeomFromUrdfString
+
+    def other(text: str) -> str:
+        assert old in text
+        return text.replace(old, new, -1 if name == "a link" else 1)
+
+    monkeypatch.setattr(pin, "buildModelFromXML", lambda text, *x: model(other(text), *x))
+    monkeypatch.setattr(
+        pin,
+        "buildGeomFromUrdfString",
+        lambda of, text, *x, **given: geometry(of, other(text), *x, **given),
+    )
+    with pytest.raises(so.StandoffError, match=said):
+        read(tmp_path, robot())
+
+
 def test_what_says_nothing_of_geometry_takes_none_away(tmp_path: Path) -> None:
     """urdfdom leaves a link out for a material without a name in what is only seen."""
     whole = read(tmp_path, robot())

@@ -14,6 +14,9 @@ import waiting
 # A page's thread holds it while it does one thing: `conftest` sees to it.
 ONE_THING = threading.RLock()
 
+DRAWN = 1e-3
+"""How far a handle may be drawn from its place, relative to its size: pages are sent floats."""
+
 
 def until(holds: Callable[[], object]) -> None:
     """Wait until something holds, and what the page's thread is amid when it does is done."""
@@ -48,37 +51,52 @@ def opened(page: Any, tab: Any) -> Any:
 def pull(page: Any, tab: Any, axis: int, length: float, release: bool = True) -> None:
     """Drag the ball by an arrow of its handle."""
     before = page.stage.pair.poses[0].translation.copy()
-    along = np.eye(3)[axis]
-
-    def grip() -> Any:
-        place = page.stage.pair.poses[0].translation
-        return place + 0.8 * page.stage.picture.handles[0].scale * along
 
     def moved() -> bool:
         return bool((page.stage.pair.poses[0].translation != before).any())
 
-    drag(page, tab, grip, length * along, moved, release)
+    drag(page, tab, page.stage.picture.handles[0], (axis, length), moved, release)
     tab.page.wait_for_timeout(300)
+
+
+PLACED = """([name, at]) => {
+    const nodes = (window.__viserMutable ?? {}).nodeRefFromName ?? {};
+    const handle = nodes[name], scene = nodes[''];
+    if (!handle || !handle.visible || !scene) return null;
+    const [x, y, z] = at, m = scene.matrixWorld.elements, is = handle.matrixWorld.elements;
+    const off = [0, 1, 2].map(k => m[k] * x + m[4 + k] * y + m[8 + k] * z + m[12 + k] - is[12 + k]);
+    return Math.hypot(...off);
+}"""
+"""How far from its place the browser has drawn a handle last; null if it has not yet."""
 
 
 def drag(
     page: Any,
     tab: Any,
-    grip: Callable[[], Any],
-    way: Any,
+    handle: Any,
+    way: tuple[int, float],
     moved: Callable[[], bool],
     release: bool = True,
 ) -> None:
-    """Drag from a point of the world, `grip`, along a vector until something has moved. A browser
-    that is short of time may not have drawn a handle yet when the button goes down: tried again."""
-    mouse = tab.page.mouse
+    """Drag a handle by an arrow, (axis, length), until something has moved. What a browser that is
+    short of time misses turns the scene instead: it is turned back, and tried again."""
+    mouse, (axis, length) = tab.page.mouse, way
+    along, (client,) = np.eye(3)[axis], page.server.get_clients().values()
+    seen_from, seen_at = client.camera.position.copy(), client.camera.look_at.copy()
+
+    def drawn() -> bool:
+        off = tab.page.evaluate(PLACED, [handle.name, [float(x) for x in handle.position]])
+        return off is not None and off <= DRAWN * handle.scale
+
     for tries in range(10):
-        start = grip()
+        until(drawn)
+        tab.page.wait_for_timeout(500 * tries)  # the scene is being turned back
+        start = handle.position + 0.8 * handle.scale * along
         mouse.move(*on_screen(page, start))
-        tab.page.wait_for_timeout(500 * (1 + tries))
+        tab.page.wait_for_timeout(500)
         mouse.down()
-        for part in np.linspace(0.0, 1.0, 8):
-            mouse.move(*on_screen(page, start + part * way))
+        for part in np.linspace(0.0, length, 8):
+            mouse.move(*on_screen(page, start + part * along))
         held = waiting.happens(moved, 5.0 * (1 + tries))
         if held:
             tab.page.wait_for_timeout(500)
@@ -86,4 +104,6 @@ def drag(
             mouse.up()
         if held:
             return
+        tab.page.wait_for_timeout(500)  # what the turn still sends
+        client.camera.position, client.camera.look_at = seen_from, seen_at
     raise AssertionError("nothing was dragged")

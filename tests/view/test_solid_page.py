@@ -445,15 +445,8 @@ def test_a_solid_dragged_in_a_browser(scene: Path, chromium: Any, tab: Callable[
         desk = opened(page, tab(980, 420))
         assert desk.number("distance") == pytest.approx(0.7, abs=1e-8)
         assert desk.shown("status") == "CONVERGED"
-        desk.page.wait_for_timeout(1000)
-        up = np.array([0.0, 0.0, 0.8 * stage.picture.handles[1].scale])
-        drag(
-            page,
-            desk,
-            lambda: stage.pair.poses[1].translation + up,
-            np.array([0.0, 0.0, 0.3]),
-            lambda: stage.pair.poses[1].translation[2] > 0.1,
-        )
+        handle = stage.picture.handles[1]
+        drag(page, desk, handle, (2, 0.3), lambda: stage.pair.poses[1].translation[2] > 0.1)
         desk.page.wait_for_timeout(500)
         distance = stage.pair.answer.distance
         assert stage.pair.poses[1].translation[0] == pytest.approx(0.1)

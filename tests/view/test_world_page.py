@@ -241,14 +241,7 @@ def test_a_body_dragged_in_a_browser(chromium: Any, tab: Callable[..., Any]) -> 
         stage = page.stage
         page._asked.put(lambda: page.hand(1))
         until(lambda: stage._hand == 1)
-        desk.page.wait_for_timeout(1500)
-        drag(
-            page,
-            desk,
-            lambda: stage.live.poses[1, :3, 3] + [0.0, 0.0, 0.8 * stage.picture.handle.scale],
-            np.array([0.0, 0.0, 0.4]),
-            lambda: stage.live.poses[1, 2, 3] > 0.2,
-        )
+        drag(page, desk, stage.picture.handle, (2, 0.4), lambda: stage.live.poses[1, 2, 3] > 0.2)
         desk.page.wait_for_timeout(500)
         centre = stage.live.poses[1, :3, 3]
         assert stage.live.answer["ball 1", "ball 2"].distance == pytest.approx(
