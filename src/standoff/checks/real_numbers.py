@@ -32,7 +32,8 @@ def shown(value: Any, characters: int = SHOWN_CHARACTERS) -> str:
     """Return `value` as a message repeats it: its repr on one line, cut short; of a large array,
     its shape."""
     if isinstance(value, np.ndarray) and value.size > SHOWN_NUMBERS:
-        return f"an array of {' by '.join(map(str, value.shape))} numbers"
+        kind = "a masked array" if isinstance(value, np.ma.MaskedArray) else "an array"
+        return f"{kind} of {' by '.join(map(str, value.shape))} numbers"
     try:
         text = _items(value) or repr(value)
     except RecursionError:

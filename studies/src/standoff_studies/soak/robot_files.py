@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.whole_files import write_whole
 
 Array = NDArray[np.float64]
 Draw = np.random.Generator
@@ -399,7 +400,7 @@ def case_of(seed: int, number: int, folder: Path) -> Outcome:
     whole = drawn_urdf(rng) if kind == "urdf" else drawn_mjcf(rng)
     root, damage = damaged(rng, whole)
     path = folder / f"drawn.{'urdf' if kind == 'urdf' else 'xml'}"
-    path.write_bytes(ET.tostring(root))
+    write_whole({path: lambda file: file.write(ET.tostring(root))})
     try:
         if kind == "urdf":
             robot = so.Robot.from_urdf(path, mimic=True)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 import standoff as so
 from standoff.robots.paths import FunctionPath
 from standoff.robots.proof import PathProof, Verdict
+from standoff.whole_files import write_whole
 
 Array = NDArray[np.float64]
 Draw = np.random.Generator
@@ -267,7 +268,7 @@ def _of_urdf(
     written = f'<robot name="drawn">{"".join(parts)}</robot>'
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "drawn.urdf"
-        path.write_text(written)
+        write_whole({path: lambda file: file.write(written.encode())})
         robot = so.Robot.from_urdf(path, mimic=True)
     model = pin.buildModelFromXML(written)
     by_name = {link: k for k, link in enumerate(robot.geoms.links)}
