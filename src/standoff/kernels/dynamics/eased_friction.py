@@ -5,8 +5,8 @@ of a body slow its slip by at most ``slowed``, the sum over them of grip times t
 mass that a push across the normal moves there; at spots between two bodies that move it counts
 twice, as both may slip against each other. A step that holds its forces gives the slip energy where
 ``h slowed > 2``: under a load of other bodies, or in an impact. There a second pass takes a part of
-the friction, so that the slip ends within a tick and does not grow; near the limit it is more, and
-at the limit all, so that nothing jumps.
+the friction, so that the slip does not grow, and ends within a tick from ``h slowed = 4`` on.
+Nearer the limit the part is more, and at the limit it is all, so that nothing jumps.
 """
 
 from standoff.kernels.algebra.frames import frame_across
