@@ -335,7 +335,7 @@ def test_the_page(standoff: Standoff, job: Path, tmp_path: Path) -> None:
         assert f">{facts[key]['sum'] / 60:.6g} cm<" in told
     for k, row in enumerate(facts["worst"]["row"]):
         distance = facts["worst"]["distance"][k]
-        assert f"<figcaption>row {row}: {distance:.6g} cm, A tool, B part, " in told
+        assert f"<figcaption>row {row}: {at_least(distance)} cm, A tool, B part, " in told
         cells = [f"{facts['worst']['parameters'][name][k]:.6g}" for name in ("x", "z", "any.1")]
         assert "".join(f'<td class="number">{cell}</td>' for cell in cells) in told
     assert "src=" not in told.replace('src="data:', "")

@@ -217,7 +217,7 @@ def _rows(job: Job, rows: Rows) -> str:
     heads += ["status", *(["nearest pair"] if several else [])]
     body = []
     for k, row in enumerate(first.row.tolist()):
-        cells = [str(row), f"{first.distance[k]:.6g}", at_least(first.lower_bound[k])]
+        cells = [str(row), at_least(first.distance[k]), at_least(first.lower_bound[k])]
         cells += [f"{number:.6g}" for number in numbers[k].tolist()]
         cells.append(BY_NUMBER[int(first.status[k])].name)
         pair = pairs[k]
