@@ -248,24 +248,26 @@ def farthest(body: RigidBody) -> float:
     origin, length; 0 for a half-space."""
     mass = body.mass_properties
     centre = mass.centre if mass is not None and body.kind == FREE else np.zeros(3)
-    middle, half = _box(body)
+    middle, half, swept = _box(body)
     corner = np.abs(middle - centre) + half
-    return float(np.linalg.norm(corner)) if np.isfinite(corner).all() else 0.0
+    return float(np.linalg.norm(corner)) + swept if np.isfinite(corner).all() else 0.0
 
 
 def unseen_depth(system: System, pair: int) -> float:
     """How deep a tick may have hidden two bodies in each other before it is counted, length: the
     depth that their contact is meant for, or a part of what is thinner."""
-    thinnest = min(2.0 * float(_box(system.bodies[k])[1].min()) for k in system.pairs[pair])
+    boxes = (_box(system.bodies[k]) for k in system.pairs[pair])
+    thinnest = min(2.0 * (float(half.min()) + swept) for _, half, swept in boxes)
     return min(system.depth(pair), UNSEEN_PART * thinnest)
 
 
-def _box(body: RigidBody) -> tuple[Array, Array]:
-    """Centre and half the sides of the box around a body, its frame."""
+def _box(body: RigidBody) -> tuple[Array, Array, float]:
+    """Centre and half the sides of the box around what a body's radius sweeps, its frame; and the
+    radius."""
     shape = body.body.boundary if isinstance(body.body, SolidModel) else body.body
     swept = shape.radius if isinstance(shape, Body) else 0.0
-    half = shape.reals[L.BOX_HALF : L.BOX_HALF + 3] + swept
-    return shape.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3], half
+    middle, half = (shape.reals[at : at + 3] for at in (L.BOX_CENTRE, L.BOX_HALF))
+    return middle, half, swept
 
 
 def _tool(coupler: Any, tool: Any, bodies: tuple[RigidBody, ...]) -> int | None:
