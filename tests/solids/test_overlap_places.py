@@ -14,6 +14,7 @@ from draws import draws
 from families.solid_shapes import peg, prism, tube
 from on_first_use import OnFirstUse
 from standoff.solids import Solid, SolidProximity
+from standoff.solids.spatial.pair import PlacedPair
 from standoff.tracking.status import Status
 
 Array = np.ndarray
@@ -248,3 +249,29 @@ def test_an_overlap_too_deep_for_places_is_still_told() -> None:
     _, answer = tracker.step(state, STILL, so.Pose(np.eye(3), [1.5, 0.31, 0.5]))
     assert answer.status is Status.OVERLAPPING
     assert answer.counts.restarts == 1
+
+
+def test_a_deadline_ends_the_ascent_of_a_ball(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[int] = []
+    depths_of = PlacedPair.depths
+
+    def counted(pair: PlacedPair, point: Array) -> tuple[float, float, Array, Array, int]:
+        told = depths_of(pair, point)
+        looks.append(told[4])
+        return told
+
+    monkeypatch.setattr(PlacedPair, "depths", counted)
+    pose = so.Pose(np.eye(3), [1.5, 0.3, 0.5])
+    whole = so.distance(feet(), lid(), STILL, pose)
+    spent = sum(looks)
+    assert len(looks) > 20
+    looks.clear()
+    short = so.solids.distance(feet(), lid(), STILL, pose, deadline=spent // 10)
+    assert sum(looks[:-1]) < spent // 10
+    assert short.status is Status.OVERLAPPING
+    assert 0.0 < short.overlap.radius <= whole.overlap.radius
+    for solid, at in (
+        (feet(), short.overlap.common_point),
+        (lid(), short.overlap.common_point - pose.translation),
+    ):
+        assert solid.signed_distance([at]).distance[0] <= -short.overlap.radius + 1e-9

@@ -17,50 +17,65 @@ MOST_STEPS = 60
 WAYS = np.array([w for w in product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
 
 
-def common_ball(pair: PlacedPair, starts: Array, least: float) -> Overlap | None:
+class Ascent:
+    """Depths of world points in both solids, for as long as evaluations are left."""
+
+    def __init__(self, pair: PlacedPair, left: int) -> None:
+        self.pair, self.left = pair, left
+        self.size = min(pair.a.size, pair.b.size)
+
+    def depths(self, point: Array) -> tuple[float, float, Array, Array]:
+        da, db, ga, gb, spent = self.pair.depths(point)
+        self.left -= spent
+        return da, db, ga, gb
+
+
+def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Overlap | None:
     """By ascent of the lesser depth from world points; None if no ball is deeper than `least`.
 
-    A local maximum: the ball is inside both solids, but another one may be larger.
+    A local maximum, or what was found before `left` evaluations were spent: the ball is inside both
+    solids, but another one may be larger.
     """
-    best, where = -np.inf, starts[0]
+    best, where, ascent = -np.inf, starts[0], Ascent(pair, left)
     for start in starts:
-        depth, point = _climbed(pair, start, FIRST_STEP)
+        depth, point = _climbed(ascent, start, FIRST_STEP)
         if depth > best:
             best, where = depth, point
-    return (
-        Overlap(where, best, 2.0 * best) if best > least else ball_beside(pair, starts[:1], least)
-    )
+        if ascent.left <= 0:
+            break
+    if best > least:
+        return Overlap(where, best, 2.0 * best)
+    return ball_beside(pair, starts[:1], least, ascent.left)
 
 
-def ball_beside(pair: PlacedPair, starts: Array, least: float) -> Overlap | None:
+def ball_beside(pair: PlacedPair, starts: Array, least: float, left: int) -> Overlap | None:
     """The same from the first point inside both that is found beside common points of the
     boundaries."""
+    ascent = Ascent(pair, left)
     for start in starts:
-        depth, point = _beside(pair, start, least)
+        depth, point = _beside(ascent, start, least)
         if depth > least:
             return Overlap(point, depth, 2.0 * depth)
     return None
 
 
-def _beside(pair: PlacedPair, start: Array, least: float) -> tuple[float, Array]:
+def _beside(ascent: Ascent, start: Array, least: float) -> tuple[float, Array]:
     """From a point inside both that is sought beside a common point of the boundaries."""
-    size = min(pair.a.size, pair.b.size)
     ways = WAYS / np.linalg.norm(WAYS, axis=1)[:, None]
     for look in LOOKS:
-        spots = start + look * size * ways
-        depths = [min(pair.depths(spot)[:2]) for spot in spots]
-        k = int(np.argmax(depths))
-        if depths[k] > least:
-            return _climbed(pair, spots[k], look)
+        spots = start + look * ascent.size * ways
+        depths = [min(ascent.depths(spot)[:2]) for spot in spots if ascent.left > 0]
+        k = int(np.argmax(depths)) if depths else 0
+        if depths and depths[k] > least:
+            return _climbed(ascent, spots[k], look)
     return -np.inf, start
 
 
-def _climbed(pair: PlacedPair, start: Array, first: float) -> tuple[float, Array]:
-    size = min(pair.a.size, pair.b.size)
-    point, (da, db, ga, gb) = start, pair.depths(start)
-    step = first * size
+def _climbed(ascent: Ascent, start: Array, first: float) -> tuple[float, Array]:
+    point, (da, db, ga, gb) = start, ascent.depths(start)
+    step = first * ascent.size
     for _ in range(MOST_STEPS):
-        if step <= LAST_CLIMB * size:
+        if step <= LAST_CLIMB * ascent.size or ascent.left <= 0:
             break
         worse, other = (ga, gb) if da <= db else (gb, ga)
         ways = [worse, worse + other, worse - (worse @ other) * other]
@@ -69,7 +84,7 @@ def _climbed(pair: PlacedPair, start: Array, first: float) -> tuple[float, Array
             if length < LEADS_NOWHERE:
                 continue
             trial = point + step * way / length
-            told = pair.depths(trial)
+            told = ascent.depths(trial)
             if min(told[:2]) > min(da, db):
                 point, (da, db, ga, gb) = trial, told
                 break

@@ -190,14 +190,16 @@ class PlacedPair:
             return None
         return np.array([values[4], row[1], row[2], *values[:4], 0.0])
 
-    def depths(self, point: Array) -> tuple[float, float, Array, Array]:
-        """(how deep a world point is in A and in B, at least; how each grows there)."""
+    def depths(self, point: Array) -> tuple[float, float, Array, Array, int]:
+        """(how deep a world point is in A and in B, at least; how each grows there; how many
+        evaluations it took)."""
         found = [
             signed_distances(solid, inside(point)[None])
             for solid, inside in ((self.a, self.in_a), (self.b, self.in_b))
         ]
         ga, gb = -self.ra @ found[0].gradient[0], -self.rb @ found[1].gradient[0]
-        return -float(found[0].upper_bound[0]), -float(found[1].upper_bound[0]), ga, gb
+        da, db = (-float(each.upper_bound[0]) for each in found)
+        return da, db, ga, gb, sum(int(each.evaluations[0]) for each in found)
 
 
 def references_of(solid: SolidModel) -> Array:

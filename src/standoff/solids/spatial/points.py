@@ -48,6 +48,8 @@ class PointDistances(NamedTuple):
         Are the bounds within the tolerance?
     smooth : (n,) array of bool
         Was only one nearest point found?
+    evaluations : (n,) array of int
+        Of points and bounds, which it took.
     """
 
     distance: Array
@@ -57,6 +59,7 @@ class PointDistances(NamedTuple):
     nearest: Array
     converged: NDArray[np.bool_]
     smooth: NDArray[np.bool_]
+    evaluations: NDArray[np.int64]
 
 
 def packed_point() -> tuple[NDArray[np.int64], Array, NDArray[np.int64], Array]:
@@ -120,6 +123,7 @@ def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
     distance, low, high = np.zeros((3, n))
     gradient, nearest = np.zeros((2, n, 3))
     converged, smooth = np.zeros((2, n), dtype=bool)
+    evaluations = np.zeros(n, dtype=np.int64)
     for k, point in enumerate(points):
         found = distance_to_boundary(solid, point)
         leaf, u, v = int(found.best[2]), found.best[5], found.best[6]
@@ -143,7 +147,8 @@ def signed_distances(solid: SolidModel, points: Array) -> PointDistances:
         nearest[k] = at
         converged[k] = high[k] - low[k] <= 3.0 * found.tolerance
         smooth[k] = _alone(solid, found) and not on_it
-    return PointDistances(distance, low, high, gradient, nearest, converged, smooth)
+        evaluations[k] = found.told.evaluations
+    return PointDistances(distance, low, high, gradient, nearest, converged, smooth, evaluations)
 
 
 def side_of(solid: SolidModel, best: Array, others: Array, point: Array) -> float:
