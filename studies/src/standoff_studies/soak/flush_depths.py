@@ -266,6 +266,7 @@ def judged(a: Shape, b: Shape, pose: Poses, told: Any) -> Array:
     size = a.size + b.size + np.linalg.norm(pose.shifts, axis=1)
     least = depths(a, b, pose, directions(a, b, pose.turns)).min(axis=1)
     own = depths(a, b, pose, told.normal[:, None])[:, 0]
+    least = np.minimum(least, own)  # among the directions drawn none may part bodies that are apart
     # cores that are apart may be nearest along any direction
     exact = (least > a.ball + b.ball) & (not (a.discs.any() or b.discs.any()))
     bound = told.upper_bound < -least - NOISE * size
@@ -277,7 +278,7 @@ def judged(a: Shape, b: Shape, pose: Poses, told: Any) -> Array:
         np.ones(len(size)),
         within,
         within & (-told.distance > least * (1.0 + THOUSANDTH) + TOLERANCE * size),
-        within & (np.abs(own + told.distance) > THOUSANDTH * own + TOLERANCE * size),
+        within & (np.abs(own + told.distance) > THOUSANDTH * np.abs(own) + TOLERANCE * size),
         (own > 2.0 * TOLERANCE * size) & ~penetrating,
         bound,
         np.zeros(len(size)),
