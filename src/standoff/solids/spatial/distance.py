@@ -210,8 +210,8 @@ def _meeting(
             spot = pair.in_b(world) if which == "A" else pair.in_a(world)
             if other.may_hold(spot):
                 starts.append(world)
-    left = sought.deadline - found.told.evaluations
-    overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance, left)
+    spare = sought.deadline - found.told.evaluations
+    overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance, spare)
     if overlap:
         return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
@@ -241,8 +241,8 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     way = parted(normals, found.tolerance, lambda by: _is_apart(pair.moved(by)))
     if way == np.inf:
         spots = [0.5 * (each.point_a + each.point_b) for each in _places(pair, common, senses, 0.0)]
-        left = sought.deadline - common.told.evaluations
-        overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance, left)
+        spare = sought.deadline - common.told.evaluations
+        overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance, spare)
         if overlap:
             return answer_of(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
         way = depth_bound(pair, found.tolerance)
