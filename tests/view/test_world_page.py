@@ -15,6 +15,7 @@ from browsing import drag, opened, until
 import standoff as so
 from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.scene import load_scene
+from standoff.wording import at_least
 
 pytest.importorskip("viser", reason="viser is not installed (extra 'view')")
 
@@ -249,7 +250,7 @@ def test_a_body_dragged_in_a_browser(chromium: Any, tab: Callable[..., Any]) -> 
         )
         desk.page.get_by_role("tab", name="Matrix").click()
         desk.page.locator("svg[data-of=matrix]").wait_for()
-        gap = f"{stage.live.answer['ball 1', 'ball 2'].distance:.2g}"
+        gap = at_least(stage.live.answer["ball 1", "ball 2"].distance, 2)
         until(lambda: gap in desk.page.locator("svg[data-of=matrix]").text_content())
         assert desk.foreign(page.address) == []
         assert (desk.failed, desk.errors) == ([], [])
