@@ -111,7 +111,7 @@ class ClearanceFiles:
 
 @dataclass(frozen=True)
 class ClearanceCommand:
-    """Report the clearance of all pairs of a scene's bodies, or of an assembly's parts, proven.
+    """Report the proven clearance of all pairs of a scene's bodies or an assembly's parts.
 
     Example: standoff clearance examples/fits.toml --min 0.3 --allow examples/fits-allowed.toml
 
