@@ -63,8 +63,11 @@ def test_gears_keep_their_ratio() -> None:
     # on the line of action: both flanks' thinning, the play of the bore, and what is pressed
     assert np.abs(behind).max() < 2.0 * thin * base + play + run.deepest
     assert run.deepest < 4e-5
-    # as it lands level on the pin's head there are more spots than room, for a tick or two
-    assert run.uncertified <= 5
+    # as it lands level on the pin's head there are more spots than room, for a tick or two; and a
+    # tick in which a flank goes farther than its gap might have crossed the next tooth
+    crossed = sum(each.ticks for each in run.crossings)
+    assert run.uncertified - crossed <= 5
+    assert crossed <= 20
     assert run.jumps == 0
     assert (run.spots[:, 0] > 0).any()
     assert np.ptp(run.energy.balance) < 0.05 * np.ptp(run.energy.supplied)

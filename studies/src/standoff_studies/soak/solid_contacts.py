@@ -52,12 +52,13 @@ FIRST_STEP, HALVINGS = 4e-3, 8
 
 @dataclass(frozen=True)
 class Verdict:
-    """Counts of ticks, of those that were not certified, and of places that ended deep; of samples,
-    of those that overlap, and of those that are wrong; of minima of samples, and of those that no
-    place was; and seconds."""
+    """Counts of ticks, of those whose answers were not certified, of those that may have crossed
+    something, and of places that ended deep; of samples, of those that overlap, and of those that
+    are wrong; of minima of samples, and of those that no place was; and seconds."""
 
     ticks: int = 0
     uncertified: int = 0
+    crossings: int = 0
     jumps: int = 0
     sampled: int = 0
     overlaps: int = 0
@@ -77,7 +78,7 @@ class Verdict:
         each = 1e6 * self.seconds / max(self.ticks, 1)
         return (
             f"{self.ticks:,} ticks, {each:.0f} us each; {self.uncertified} not certified, "
-            f"{self.jumps} places ended deep; {self.sampled:,} sampled, {self.overlaps:,} in "
+            f"{self.crossings} may have crossed, {self.jumps} places ended deep; {self.sampled:,} sampled, {self.overlaps:,} in "
             f"overlap: {self.wrong} wrong; {self.minima:,} minima, {self.lost} no places"
         )
 
@@ -134,7 +135,9 @@ def judged_fall(
         lines += [f"{where}: {fault}" for fault in faults]
         if not state.contact(0).places and state.distance(0) > below and first > ticks // 4:
             break
-    told = Verdict(uncertified=state.uncertified, jumps=state.jumps)
+    crossed = sum(each.ticks for each in state.crossings)
+    missed = state.uncertified - crossed
+    told = Verdict(uncertified=missed, crossings=crossed, jumps=state.jumps)
     return verdict.plus(told), lines
 
 
