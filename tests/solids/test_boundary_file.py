@@ -14,9 +14,9 @@ import pytest
 
 import standoff as so
 from standoff.bodies import Body, Boundary, Edge, Face
+from standoff.bodies.assembly import joined_parts
 from standoff.bodies.body import proven_again
 from standoff.bodies.boundary import made_boundary
-from standoff.bodies.closing import joined_parts
 from standoff.errors import StandoffError
 from standoff.geometry import (
     ConicArc,
@@ -96,7 +96,7 @@ def test_a_boundary_comes_back(name: str, tmp_path: Path) -> None:
 def missed() -> Boundary:
     """The bolt, of which something proved that its parts miss each other by 1e-4."""
     parts = bolt()
-    joined = joined_parts((), parts.edge_parts, parts.face_parts, None, 1e-3)
+    joined = joined_parts((), parts.edge_parts, parts.face_parts, 1e-3, closed=True)
     return made_boundary("missed", replace(joined, residual=1e-4))
 
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,10 @@ from standoff.bodies.tolerances import (
     WIDE_ANGLE,
     coordinate_roundoff,
 )
-from standoff.bodies.topology import SIDES, Apex, Edge, Face
+from standoff.bodies.topology import SIDES, Apex, Edge, Face, check_parts, extent_of, parts_of
+from standoff.checks.arrays import finite
+from standoff.checks.numbers import magnitude
+from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
 from standoff.geometry.validation import Array
@@ -203,6 +207,62 @@ def _wide_sector(
         return None
     number = next(k for k, c in enumerate(charts) if c is chart)
     return Sector(number, L.SECTOR_WIDE, u, v, start, start + width)
+
+
+def joined_parts(
+    vertices: Any,
+    edges: Sequence[Edge],
+    faces: Sequence[Face],
+    tolerance: float | None,
+    dimension: int = 3,
+    *,
+    closed: bool = False,
+    senses: Sequence[int | None] | None = None,
+) -> Joined:
+    """Parts as they are given, checked, and joined; raises as `Body.from_brep` does.
+
+    closed : are they shells that bound a volume, each turned so that it faces outward; senses : as
+    in `Boundary.from_brep`, which tells what such parts are refused for.
+    """
+    points = np.zeros((0, 3))
+    if shape_of(vertices) not in ((0,), (0, 3)):
+        points = finite(vertices, "vertices", (-1, 3))
+    edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
+    check_parts(points, edges, faces, dimension)
+    spots = [points, *(edge_points(e) for e in edges)]
+    if closed:
+        _check_closed(faces)
+        spots.append(_charts_points(faces))
+    cloud, what = np.concatenate(spots), "the boundary" if closed else "the body"
+    rough = extent_of(cloud, what) if len(cloud) > 1 else float(not len(cloud))
+    tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
+    return assemble(points, edges, faces, dimension, rough, tolerance, _checked(senses, faces))
+
+
+def _check_closed(faces: Sequence[Face]) -> None:
+    if not faces:
+        raise BodyError("A boundary needs faces: points, segments and planar loops are bodies.")
+    if len(faces) == 1 and not faces[0].loop and len(faces[0].charts) == 1:
+        raise BodyError("A half-space has no closed boundary: give its face edges.")
+
+
+def _charts_points(faces: Sequence[Face]) -> Array:
+    """The centres of the charts of faces without loops."""
+    whole = [chart.jet(0.0, 0.0)[0] for f in faces if not f.loop for chart in f.charts]
+    return np.reshape(whole, (-1, 3))
+
+
+def _checked(senses: Sequence[int | None] | None, faces: Sequence[Face]) -> list[int | None] | None:
+    if senses is None:
+        return None
+    found = list(senses)
+    if len(found) != len(faces) or any(s not in (1, -1, None) for s in found):
+        raise BodyError(
+            f"senses = {shown(senses)}: give +1, -1 or None for each of {len(faces)} faces.",
+            "senses",
+            senses,
+        )
+    return found
 
 
 def assemble(

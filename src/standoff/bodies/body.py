@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.affine_maps import affine_map
-from standoff.bodies.assembly import Joined, assemble
+from standoff.bodies.assembly import assemble, joined_parts
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
 from standoff.bodies.convexity import Known
@@ -18,10 +18,8 @@ from standoff.bodies.finishing import Packed, finish
 from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.tolerances import MAX_SPREAD
-from standoff.bodies.topology import Edge, Face, check_parts, extent_of, parts_of
-from standoff.checks.arrays import finite
-from standoff.checks.numbers import magnitude, magnitude_or_zero
-from standoff.checks.real_numbers import shape_of
+from standoff.bodies.topology import Edge, Face
+from standoff.checks.numbers import magnitude_or_zero
 from standoff.geometry.surfaces import Surface
 
 if TYPE_CHECKING:
@@ -96,7 +94,7 @@ class Body(Boundary):
         radius = magnitude_or_zero(rounding, "rounding")
         if convexity_tolerance is not None:
             convexity_tolerance = magnitude_or_zero(convexity_tolerance, "convexity_tolerance")
-        joined = joined_parts(vertices, edges, faces, dimension, tolerance)
+        joined = joined_parts(vertices, edges, faces, tolerance, dimension)
         return made_body(name, radius, finish(joined, radius, convexity_tolerance))
 
     @staticmethod
@@ -351,25 +349,6 @@ class Body(Boundary):
         return bool(np.abs(np.concatenate(spots)[:, 2]).max() == 0.0)
 
 
-def joined_parts(
-    vertices: Any,
-    edges: Sequence[Edge],
-    faces: Sequence[Face],
-    dimension: int,
-    tolerance: float | None,
-) -> Joined:
-    """Parts as they are given, checked, and joined; raises as `Body.from_brep` does."""
-    points = np.zeros((0, 3))
-    if shape_of(vertices) not in ((0,), (0, 3)):
-        points = finite(vertices, "vertices", (-1, 3))
-    edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
-    check_parts(points, edges, faces, dimension)
-    cloud = np.concatenate([points] + [edge_points(e) for e in edges])
-    rough = extent_of(cloud, "the body") if len(cloud) > 1 else float(not len(cloud))
-    tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
-    return assemble(points, edges, faces, dimension, rough, tolerance)
-
-
 def proven_again(
     parts: tuple[Any, Sequence[Edge], Sequence[Face]],
     name: str,
@@ -379,7 +358,7 @@ def proven_again(
 ) -> Body:
     """A spatial body of vertices, edges and faces that are known to miss each other by up to a
     residual, length; raises as `Body.from_brep` does."""
-    joined = joined_parts(*parts, 3, tolerance)
+    joined = joined_parts(*parts, tolerance)
     joined = replace(joined, residual=max(joined.residual, residual))
     return made_body(name, radius, finish(joined, radius, None))
 

@@ -105,9 +105,10 @@ class Boundary(PackedParts):
         ValueError
             NaN, infinite, negative or wrongly shaped numbers.
         """
-        from standoff.bodies.closing import joined_parts
+        from standoff.bodies.assembly import joined_parts
 
-        return made_boundary(name, joined_parts(vertices, edges, faces, senses, tolerance))
+        joined = joined_parts(vertices, edges, faces, tolerance, closed=True, senses=senses)
+        return made_boundary(name, joined)
 
     @staticmethod
     def from_patches(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -27,10 +26,6 @@ from standoff.bodies.tolerances import (
     VOLUME_END,
     coordinate_roundoff,
 )
-from standoff.bodies.topology import Edge, Face, check_parts, extent_of, parts_of
-from standoff.checks.arrays import finite
-from standoff.checks.numbers import magnitude
-from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
@@ -38,26 +33,6 @@ from standoff.kernels.body import layout as L
 
 # Greatest number of a shell's faces that a message names.
 MOST_NAMED = 6
-
-
-def joined_parts(
-    vertices: Any,
-    edges: Sequence[Edge],
-    faces: Sequence[Face],
-    senses: Sequence[int | None] | None,
-    tolerance: float | None,
-) -> Joined:
-    """Parts as they are given, checked and turned so that each shell faces outward."""
-    points = np.zeros((0, 3))
-    if shape_of(vertices) not in ((0,), (0, 3)):
-        points = finite(vertices, "vertices", (-1, 3))
-    edges, faces = parts_of(edges, "edges"), parts_of(faces, "faces")
-    check_parts(points, edges, faces, 3)
-    _check_bounded(faces)
-    cloud = np.concatenate([points, *(edge_points(e) for e in edges), _charts_points(faces)])
-    rough = extent_of(cloud, "the boundary")
-    tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")
-    return assemble(points, edges, faces, 3, rough, tolerance, _checked_senses(senses, faces))
 
 
 def joined_patches(patches: Sequence[Surface], tolerance: float | None) -> Joined:
@@ -80,34 +55,6 @@ def joined_patches(patches: Sequence[Surface], tolerance: float | None) -> Joine
         tolerance=sewn.tolerance,
         claims=[0] * len(joined.shells),
     )
-
-
-def _check_bounded(faces: Sequence[Face]) -> None:
-    if not faces:
-        raise BodyError("A boundary needs faces: points, segments and planar loops are bodies.")
-    if len(faces) == 1 and not faces[0].loop and len(faces[0].charts) == 1:
-        raise BodyError("A half-space has no closed boundary: give its face edges.")
-
-
-def _charts_points(faces: Sequence[Face]) -> Array:
-    """The centres of the charts of faces without loops."""
-    whole = [chart.jet(0.0, 0.0)[0] for f in faces if not f.loop for chart in f.charts]
-    return np.reshape(whole, (-1, 3))
-
-
-def _checked_senses(
-    senses: Sequence[int | None] | None, faces: Sequence[Face]
-) -> list[int | None] | None:
-    if senses is None:
-        return None
-    found = list(senses)
-    if len(found) != len(faces) or any(s not in (1, -1, None) for s in found):
-        raise BodyError(
-            f"senses = {shown(senses)}: give +1, -1 or None for each of {len(faces)} faces.",
-            "senses",
-            senses,
-        )
-    return found
 
 
 def close(joined: Joined) -> tuple[Assembled, Ints, Array, BoundaryReport]:

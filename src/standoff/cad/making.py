@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from standoff.bodies.assembly import Joined
+from standoff.bodies.assembly import Joined, joined_parts
 from standoff.bodies.body import Body, proven_again
 from standoff.bodies.boundary import Boundary, EdgeKind, made_boundary
 from standoff.bodies.charts import loop_pcurve
-from standoff.bodies.closing import joined_parts
 from standoff.bodies.enclosed import MOST_NODES
 from standoff.bodies.moments.cells import integrate
 from standoff.bodies.moments.face_cells import face_cells
@@ -85,7 +84,8 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport, 
     allowed = max(FILE_SLACK * report.tolerance, JOIN_TOLERANCE * size)
     points = np.reshape(pieces.vertices, (-1, 3))
     try:
-        joined = joined_parts(points, pieces.edges, pieces.faces, pieces.senses, allowed)
+        parts = points, pieces.edges, pieces.faces
+        joined = joined_parts(*parts, allowed, closed=True, senses=pieces.senses)
         bound = trim_bound(pieces, size)
         if bound > allowed:
             raise Refused(

@@ -16,9 +16,9 @@ from typing import BinaryIO
 import numpy as np
 
 from standoff.bodies import Apex, Body, Boundary, Edge, Face
+from standoff.bodies.assembly import joined_parts
 from standoff.bodies.body import proven_again
 from standoff.bodies.boundary import made_boundary
-from standoff.bodies.closing import joined_parts
 from standoff.bodies.report import BoundaryReport
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -188,7 +188,7 @@ def _made(facts: Facts) -> Boundary | Body:
         radius = float(facts["radius"])
         return proven_again((vertices, edges, faces), name, radius, tolerance, residual)
     senses = [one["sense"] for one in facts["faces"]]
-    joined = joined_parts(vertices, edges, faces, senses, tolerance)
+    joined = joined_parts(vertices, edges, faces, tolerance, closed=True, senses=senses)
     residual = max(joined.residual, tolerance if old else float(facts["sewing_residual"]))
     # what was finished once has no two solids: a shell inside the outer one is a cavity
     claims = [0] * len(joined.shells)
