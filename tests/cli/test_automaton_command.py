@@ -42,7 +42,8 @@ def test_an_uncertified_run_tells_in_the_exit_code(standoff: Standoff, crossing:
 
 
 @pytest.mark.parametrize(
-    ("name", "head"), [("a.svg", "<?xml"), ("a.mmd", "flowchart"), ("a.txt", "modes: 1 feature of A × ")]
+    ("name", "head"),
+    [("a.svg", "<?xml"), ("a.mmd", "flowchart"), ("a.txt", "modes: 1 feature of A × ")],
 )
 def test_files(standoff: Standoff, passing: Path, name: str, head: str) -> None:
     target = passing.with_name(name)

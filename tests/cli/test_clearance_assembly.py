@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("OCP")
 
 from cad import cad_shapes as made
+from standoff.clearance.report import Report
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +54,15 @@ def test_a_clearance_that_is_not_kept_is_code_3(standoff: Any, file: Path, tmp_p
     assert "at rest" in page.read_text("utf-8")
     assert plot.read_bytes().startswith(b"\x89PNG")
     assert standoff("clearance", file, "--min", "0.009").code == 0
+
+
+def test_what_the_bounds_prove_is_kept_though_an_answer_is_not_certified(
+    standoff: Any, file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Report, "certified", False)
+    assert not facts(standoff, file)[1]["certified"]
+    for asked, code in (((), 0), (("--min", "0.009"), 0), (("--min", "0.05"), 3)):
+        assert standoff("clearance", file, *asked).code == code
 
 
 def test_bad_files_and_options_are_code_2(standoff: Any, file: Path, tmp_path: Path) -> None:

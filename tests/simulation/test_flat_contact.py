@@ -66,12 +66,13 @@ def test_friction_under_a_load_gives_no_energy(count: int) -> None:
         bodies.append(sim.RigidBody.free(so.shapes.box(0.2, 0.2, 0.1), density=1000.0, pose=pose))
     pairs = [(k, k + 1) for k in range(count)]
     operator = sim.Operator(sim.System(bodies, law, pairs), 1e-4)
-    run = operator.run(operator.start(), 10_000, every=1000)
+    run = operator.run(operator.start(), 15_000, every=1000)
     energy = run.energy
     # what damping and impacts cost the method until it rests, a thousandth of a joule
     assert np.abs(energy.balance - energy.balance[0]).max() < 1e-3
-    assert np.ptp(energy.balance[5:]) < 5e-5
-    assert energy.kinetic[-1] < 1e-4
+    # the stack sways until then: what moves falls to a fifth in 0.2 s
+    assert np.ptp(energy.balance[10:]) < 6e-7
+    assert energy.kinetic[-1] < 6e-7
     # all friction is taken where the step bears it
     assert (run.eased > 0) == (count > 1)
 
@@ -83,11 +84,12 @@ def test_friction_of_an_impact_ends_a_slip_within_ticks() -> None:
     system = on_floor(so.shapes.sphere(0.1), law, np.zeros(3), pose=upright(0.1), twist=twist)
     operator = sim.Operator(system, 2e-5)
     run = operator.run(operator.start(), 60, every=1)
-    slip = run.velocities(1)[:, 0] - 0.1 * run.angular_velocities(1)[:, 1]
+    # the place of contact is in the middle of the overlap, a little nearer to the centre
+    lever = 0.1 + 0.5 * run.distances[:, 0]
+    slip = run.velocities(1)[:, 0] - lever * run.angular_velocities(1)[:, 1]
     assert run.eased > 0
     assert np.abs(slip).max() <= 1e-3 * (1.0 + 1e-9)
-    # the place of contact is in the middle of the overlap, a little nearer to the centre
-    assert np.abs(slip[-20:]).max() < 1e-5
+    assert np.abs(slip[-20:]).max() < 6e-7
     # it rolls now, as it would without any slip: 5/7 of its speed
     assert run.velocities(1)[-1, 0] == pytest.approx(5.0 / 7.0 * 1e-3, rel=1e-2)
 

@@ -66,6 +66,15 @@ def test_no_call_is_long(workers, seconds, monkeypatch):
     assert len(calls) <= 8 * threads.PARTS * workers + 2.0 * clock[0] / threads.HEARD_WITHIN
 
 
+@pytest.fixture
+def heard():
+    """Ctrl-C is heard, though a shell that began this in the background has it ignored."""
+    kept = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, kept)
+
+
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("workers", [1, 3])
 def test_an_interrupt_is_heard_between_two_calls(workers):
     done, met, waited = [], threading.Barrier(workers, timeout=60.0), threading.local()

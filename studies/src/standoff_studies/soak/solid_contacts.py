@@ -78,8 +78,9 @@ class Verdict:
         each = 1e6 * self.seconds / max(self.ticks, 1)
         return (
             f"{self.ticks:,} ticks, {each:.0f} us each; {self.uncertified} not certified, "
-            f"{self.crossings} may have crossed, {self.jumps} places ended deep; {self.sampled:,} sampled, {self.overlaps:,} in "
-            f"overlap: {self.wrong} wrong; {self.minima:,} minima, {self.lost} no places"
+            f"{self.crossings} may have crossed, {self.jumps} places ended deep; "
+            f"{self.sampled:,} sampled, {self.overlaps:,} in overlap: {self.wrong} wrong; "
+            f"{self.minima:,} minima, {self.lost} no places"
         )
 
 
