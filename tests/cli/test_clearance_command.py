@@ -242,6 +242,7 @@ def test_a_nominal_gap_fails_by_little_and_says_so(
     assert 0.5 - pair["least_lower_bound"] <= missing <= 2.0 * short
     assert slack <= pair["touching_within"] <= tolerance
     assert "too little, within the touching tolerance" in page.read_text("utf-8")
+    assert 0.5 - tolerance - 1e-9 <= ask < 0.5  # nine digits
     report = standoff("clearance", scene, "--min", ask, "--json").out
     assert by_name(json.loads(report))["table", "pair_of_balls"]["failure"] is None
     # one that is short by more has no such excuse

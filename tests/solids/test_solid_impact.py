@@ -202,6 +202,28 @@ def test_what_is_not_proven_is_not_told_to_graze(lower: float) -> None:
     assert found.time < 2.7
 
 
+class Loose:
+    """A tracker whose lower bound is 0, as parts miss each other by a slack."""
+
+    def __init__(self, upper: float) -> None:
+        self.upper = upper
+
+    def start(self, pose_a: so.Pose, pose_b: so.Pose) -> Asked:
+        answer = distance(SLOT, ball(0.3), pose_a, pose_b)
+        return Asked(replace(answer, lower_bound=0.0, upper_bound=self.upper, slack=1e-4))
+
+    def step(self, before: Asked, *poses: so.Pose) -> tuple[Asked, so.solids.SolidProximity]:
+        now = self.start(*poses)
+        return now, now.proximity
+
+
+@pytest.mark.parametrize(("upper", "status"), [(1.9e-4, "GRAZING"), (2.1e-4, "UNDECIDED")])
+def test_solids_graze_where_they_are_near_but_for_their_slack(upper: float, status: str) -> None:
+    paths = Fixed(STILL), Fixed(at(1.0, 1.0, 1.5))
+    search = SolidSearch(Loose(upper), (Box(SLOT), Box(ball(0.3))), 0.0, paths, (0.0, 1e-9, 1000))
+    assert search.run(0.0, 1.0).status.name == status
+
+
 @pytest.mark.parametrize("share", [1.0, 0.5, 0.3])
 def test_whatever_span_is_proposed_it_is_never_late(share, monkeypatch) -> None:
     """A ball that flies through a slot's walls is far from them before and after: only the proof

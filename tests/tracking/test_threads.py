@@ -63,7 +63,8 @@ def test_no_call_is_long(workers, seconds, monkeypatch):
     assert sorted(k for first, end in calls for k in range(first, end)) == list(range(50_000))
     longest = max(end - first for first, end in calls)
     assert longest <= max(threads.FIRST_ROWS, 1.01 * threads.HEARD_WITHIN / seconds)
-    assert len(calls) <= 8 * threads.PARTS * workers + 2.0 * clock[0] / threads.HEARD_WITHIN
+    few = 3 if workers == 1 else 8 * threads.PARTS * workers  # others move the clock, too
+    assert len(calls) <= few + 2.0 * clock[0] / threads.HEARD_WITHIN
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 import standoff as so
 from families import impacts
+from standoff.bodies.body import proven_again
 from standoff.impact.chord import Chords
 from standoff.impact.moment import Box, Moment
 from standoff.motion import (
@@ -385,18 +386,34 @@ def test_a_path_that_ends_before_is_refused() -> None:
         so.time_of_impact(body, body, REST, path, 1.5)
 
 
+def loose_disc() -> so.Body:
+    """Of height 1, whose parts are known to miss each other by up to 1e-4: that is its slack."""
+    disc = so.shapes.cylinder(1.0, 1.0)
+    parts = disc.vertex_points, disc.edge_parts, disc.face_parts
+    return proven_again(parts, "loose", 0.0, 1e-3, 1e-4)
+
+
 @pytest.mark.parametrize(
-    ("upper", "status"), [(1e-9, "GRAZING"), (0.3, "UNDECIDED"), (math.inf, "UNDECIDED")]
+    ("make", "upper", "slacks", "status"),
+    [
+        (lambda: so.shapes.sphere(0.5), 1e-9, 0.0, "GRAZING"),
+        (lambda: so.shapes.sphere(0.5), 0.3, 0.0, "UNDECIDED"),
+        (lambda: so.shapes.sphere(0.5), math.inf, 0.0, "UNDECIDED"),
+        # the lower bound is less by the slack of both: they may be as far apart again
+        (loose_disc, 0.0, 3.9, "GRAZING"),
+        (loose_disc, 0.0, 4.1, "UNDECIDED"),
+    ],
 )
-def test_bodies_graze_only_where_they_are_proven_near(monkeypatch, upper, status) -> None:
-    """Of balls that touch, with answers that prove no more than the bounds that are given."""
-    ask = Moment.ask
+def test_bodies_graze_only_where_they_are_proven_near(
+    monkeypatch, make, upper, slacks, status
+) -> None:
+    """Of bodies that touch, with answers that prove no more than the bounds that are given."""
+    ask, body = Moment.ask, make()
 
     def asked(moment, tracker, before):
         ask(moment, tracker, before)
-        moment.lower, moment.upper = -1.0, upper
+        moment.lower, moment.upper = -1.0, upper + slacks * body.report.slack
 
     monkeypatch.setattr(Moment, "ask", asked)
-    ball = so.shapes.sphere(0.5)
-    found = so.time_of_impact(ball, ball, REST, Fixed(at(1.0, 0.0, 0.0)), 1.0)
+    found = so.time_of_impact(body, body, REST, Fixed(at(0.0, 0.0, 1.0)), 1.0)
     assert found.status.name == status
