@@ -14,6 +14,7 @@ from patches import KINDS, ORIGIN, affine, part, sampled
 import standoff.geometry as g
 from draws import draws
 from shares import share
+from standoff.bodies.tolerances import DOMAIN_SPARE
 from standoff.errors import StandoffError
 from standoff.geometry.intervals import Interval
 from standoff.geometry.patch_bounds import (
@@ -167,6 +168,32 @@ def test_extents_hold_samples_along_any_direction(name: str, seed: int) -> None:
     own = np.repeat(directions[:, :, None], 2, axis=2)
     twice = surface.extents([rectangle, rectangle], own)
     np.testing.assert_array_equal(twice[0], np.repeat(low, 2, axis=1))
+
+
+@pytest.mark.parametrize("name", KINDS)
+@settings(max_examples=draws(6))
+@given(SEEDS)
+def test_bounds_go_on_beyond_the_domain(name: str, seed: int) -> None:
+    """As trimming curves may, by a small share of it: there surfaces are what they are within."""
+    rng = np.random.default_rng(seed)
+    surface = KINDS[name].make(rng).transformed(*affine(rng, bool(rng.integers(2))))
+    sides = np.reshape(surface.domain, (2, 2))
+    if not np.isfinite(sides).all():
+        return
+    grown = sides + DOMAIN_SPARE * np.ptp(sides, axis=1)[:, None] * [-1.0, 1.0]
+    at_end = rng.integers(2, size=2)
+    for wide in (1e-5, 0.1):
+        part = grown.copy()
+        for axis, end in enumerate(at_end):
+            part[axis, 1 - end] = grown[axis, end] + (0.5 - end) * 2.0 * wide * np.ptp(grown[axis])
+        rectangle = part.ravel()
+        low, high = surface.extents(rectangle, np.eye(3))
+        points = sampled(surface, rectangle).points
+        spare = 16 * EPS * (np.abs(points).max() + np.linalg.norm(surface.shift))
+        assert (low[:, 0] <= points.min(axis=0) + spare).all()
+        assert (high[:, 0] >= points.max(axis=0) - spare).all()
+        if name in ("bezier", "nurbs"):
+            assert min(excess(surface.bounds(rectangle), surface, rectangle)) > -1.0
 
 
 def test_boxes_of_quadrics_and_tori_are_exact() -> None:

@@ -39,7 +39,8 @@ PERIOD_ROUNDOFF: Final = 1e-12
 
 DOMAIN_SPARE: Final = 1e-6
 """Share of a surface's domain by which trimming curves may leave it: what files, and curves fitted
-to their edges, miss. Surfaces go on beyond their domain as what they are there."""
+to their edges, miss: OpenCASCADE's 1e-7 of length, on a domain of a tenth. Surfaces, and the bounds
+of their parts, go on beyond their domain as what they are there."""
 
 SMALLEST_PART: Final = 1e-8
 """A trimming curve is not divided beyond this fraction of it to prove that it is in its period: the

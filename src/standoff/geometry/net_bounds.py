@@ -44,9 +44,13 @@ class CutNets:
             span = np.clip(np.searchsorted(levels, middle, "right") - 1, 0, len(levels) - 2)
             first, width = levels[span], levels[span + 1] - levels[span]
             start, stop = (low - first) / width - SPAN_ROUNDING, (high - first) / width
+            stop = stop + SPAN_ROUNDING
+            # beyond its ends the grid goes on as its last patches: trimming curves may lie there
+            least = np.where(low < levels[0], np.minimum(start, 0), 0)
+            most = np.where(high > levels[-1], np.maximum(stop, 1), 1)
             self.spans.append(span)
             self.widths.append(width)
-            self.ends.append((np.clip(start, 0, 1), np.clip(stop + SPAN_ROUNDING, 0, 1)))
+            self.ends.append((np.clip(start, least, 1), np.clip(stop, 0, most)))
         self.h = blocks[self.spans[0], self.spans[1]]
         self.parts: dict[tuple[int, int], Array] = {}
 
