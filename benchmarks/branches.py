@@ -2,9 +2,9 @@
 
 Run it with ``python -m benchmarks.branches``. Of the nine scenes of ``benchmarks.tracked_solids``
 (30, 100 and 150 faces at three gaps, minima up to a tenth of the size beyond the gap): branches of
-the tracker in each frame, minima by queries from nothing at some of the poses, and the time of a
-frame with and without them. Of six branches of the paper's law on two chains of balls: the time of
-a frame in one thread and in two. Of a point that moves inside spatial bodies: the time of a frame.
+the tracker in each frame, minima by queries from nothing at some of the poses, and evaluations of
+a frame (median) with and without them. Of six branches of the paper's law on two chains of balls:
+the time of a frame in one thread and in two. Of a point that moves inside spatial bodies: that too.
 """
 
 from __future__ import annotations
@@ -41,9 +41,8 @@ def scene(faces: int, gap: float, frames: int, every: int, rng: np.random.Genera
     for minima in (below, None):
         tracker = SolidTracker(a, b, minima=minima)
         state = tracker.start(STILL, poses[0])
-        start = time.perf_counter()
         _, answers = tracker.run(state, STILL, poses[1:])
-        spent[minima] = 1e6 * (time.perf_counter() - start) / len(answers)
+        spent[minima] = np.median(answers.evaluations)
         if minima:
             ran = np.bincount(answers.minima.frame, minlength=len(answers))
     at = np.arange(0, len(ran), every)
@@ -52,12 +51,12 @@ def scene(faces: int, gap: float, frames: int, every: int, rng: np.random.Genera
     fewer = int((ran[at] < there).sum())
     return (
         f"{faces:5d} {gap:6g} {np.median(ran):6.0f} {ran.max():5d} {np.median(there):9.0f} "
-        f"{max(there):5d} {fewer:4d} of {len(at):3d} {spent[below]:9.0f} {spent[None]:9.0f}"
+        f"{max(there):5d} {fewer:4d} of {len(at):3d} {spent[below]:7.0f} {spent[None]:7.0f}"
     )
 
 
 def in_threads(frames: int) -> tuple[float, float]:
-    """Microseconds of a frame of six printed trackers in one thread, and in two."""
+    """Microseconds of a frame of six printed trackers in one thread, and in two: medians."""
     branches = [Branch(pair, 0.0) for pair in range(len(PAIRS))]
     halves, rows, spent = (branches[::2], branches[1::2]), motion()[:frames], []
 
@@ -70,13 +69,15 @@ def in_threads(frames: int) -> tuple[float, float]:
         branch.step(rows[0])
     with ThreadPoolExecutor(1) as pool:
         for split in (False, True):
-            start = time.perf_counter()
+            times = []
             for row in rows:
+                start = time.perf_counter()
                 other = pool.submit(half, halves[1], row) if split else None
                 half(halves[0] if split else branches, row)
                 if other:
                     other.result()
-            spent.append(1e6 * (time.perf_counter() - start) / len(rows))
+                times.append(1e6 * (time.perf_counter() - start))
+            spent.append(float(np.median(times)))
     return spent[0], spent[1]
 
 
@@ -105,7 +106,7 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=10, help="frames between queries")
     parser.add_argument("--faces", type=int, nargs="*", default=[30, 100, 150])
     given = parser.parse_args()
-    print("faces    gap branches, most; minima, most; fewer; us a frame with and without them")
+    print("faces gap; branches, most; minima, most; fewer; evaluations a frame with, without")
     for faces in given.faces:
         rng = np.random.default_rng(faces)
         for gap in GAPS:

@@ -28,7 +28,7 @@ from standoff.tracking import Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import draw_planar_body, show_plane
-from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.figure import NOTHING, Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import begun, motion_along, stepped
 from standoff_studies.paper.pair_simulation import REST, Place
@@ -376,12 +376,14 @@ def _statements() -> tuple[Statement, ...]:
             "Ψ' = −KΨ needs a regular M and not a definite one: the law goes to any stationary "
             "pair, and does not know of which kind it is",
         ),
-        own_statement(
+        Statement(
             FOOTNOTE,
+            NOTHING,
             f"of {len(every)} stationary pairs with opposed normals of {len(kinds())} pairs of "
             f"ellipsoids, H has as many positive eigenvalues as the Hessian of s at {proved}",
+            proved == len(every),
             by=NO_LAW,
-        )._replace(holds=proved == len(every)),
+        ),
         Statement(
             FOOTNOTE,
             "the depth is where the distance on both patches is greatest",

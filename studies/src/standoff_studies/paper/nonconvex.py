@@ -195,11 +195,16 @@ class Shown(NamedTuple):
 
 
 def shown(known: Truth, one: Run) -> list[Shown]:
-    """Return the start, the first frame that is wrong after a birth, and the worst frame."""
+    """Return the start, the middle of the first wrong stretch, and the worst frame of those in
+    which the branch with the least distance is at a minimum."""
     bad = np.flatnonzero(wrong(one))
-    worst = int(np.argmax(np.abs(one.distance - known.distance)))
-    later = bad[len(bad) // 4] if len(bad) else len(known.time) // 2
-    return [Shown(int(k), letter) for k, letter in zip((0, later, worst), "abc", strict=True)]
+    if not len(bad):
+        bad = np.array([len(known.time) // 2])
+    first = bad[: int(np.argmax(np.diff(bad, append=bad[-1] + 2) > 1)) + 1]
+    lives = known.alive[np.arange(len(known.time)), one.active]
+    worst = int(np.argmax(np.where(lives, one.distance - known.distance, 0.0)))
+    frames = 0, int(np.median(first)), worst
+    return [Shown(frame, letter) for frame, letter in zip(frames, "abc", strict=True)]
 
 
 def _draw() -> Figure:
