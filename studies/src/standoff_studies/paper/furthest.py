@@ -310,13 +310,13 @@ def furthest() -> Artwork:
     quick = followed(*QUICK)
     return Artwork(
         caption=(
-            "Left: two ellipses that overlap. Their boundaries have two stationary pairs of points "
-            "with opposed normals: the deepest (green), along which B has the shortest way out, "
-            "and the furthest (red, dashed), along which it has the longest. Middle: |x − y| less "
-            "the depth, where x and y are shifted from the deepest pair, both alike (across) and "
-            "against each other (up) [length]: it is a saddle. Right: B comes slowly through "
-            f"contact, {SLOW:g} length to either side in {DURATION:g} s. The printed law comes to "
-            "a common point of both boundaries and stays there."
+            "Above: two ellipses that overlap. Their boundaries have two stationary pairs of "
+            "points with opposed normals: the deepest (green), along which B has the shortest way "
+            "out, and the furthest (red, dashed), along which it has the longest. Beside it: "
+            "|x − y| less the depth, where x and y are shifted from the deepest pair, both alike "
+            "(across) and against each other (up) [length]: it is a saddle. Below: B comes slowly "
+            f"through contact, {SLOW:g} length to either side in {DURATION:g} s. The printed law "
+            "comes to a common point of both boundaries and stays there."
         ),
         text=(
             "Two overlapping ellipses with a short line across the overlap and a long one through "
@@ -386,7 +386,7 @@ def _statements() -> tuple[Statement, ...]:
         ),
         Statement(
             FOOTNOTE,
-            "the depth is where the distance on both patches is greatest",
+            "read by the letter: the pair to track has |x − y| greatest over both patches",
             f"H is indefinite, (2, 2), at {saddles} of {len(deepest)} depths that so.distance "
             "proves: |x − y| is greatest over shifts of both points alike, and least over shifts "
             "against each other. Greatest outright it is at the longest way out",

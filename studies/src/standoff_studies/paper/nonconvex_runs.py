@@ -42,7 +42,12 @@ FAR = 5.0
 ASKED_EVERY = 5
 """The library is asked at every such frame."""
 
-READINGS = ("the nearest at the start", "the minima at the start", "all pairs of lobes")
+READINGS = (
+    "the nearest at the start",
+    "the minima at the start",
+    "all pairs of lobes",
+    "the same as the second, told of births",
+)
 """Which branches run."""
 
 
@@ -152,15 +157,19 @@ def run(reading: str, leave_out: int | None = None) -> Run:
         READINGS[0]: [int(known.apart[0].argmin())],
         READINGS[1]: np.flatnonzero(known.alive[0]).tolist(),
         READINGS[2]: list(range(len(PAIRS))),
+        READINGS[3]: np.flatnonzero(known.alive[0]).tolist(),
     }[reading]
     branches = [Branch(pair, 0.0) for pair in begins if pair != leave_out]
     told = [_told(branches, [float(known.apart[0, branch.pair]) for branch in branches], False)]
     handed = merged = 0
-    for row, time in zip(motion(), known.time[1:].tolist(), strict=True):
+    for row, time, alive in zip(motion(), known.time[1:].tolist(), known.alive[1:], strict=True):
         before = [branch.modes().tolist() for branch in branches]
         apart = [branch.step(row) for branch in branches]
         switched = before != [branch.modes().tolist() for branch in branches]
         told.append(_told(branches, apart, switched))
+        if reading == READINGS[3]:
+            new = {*np.flatnonzero(alive).tolist()} - {branch.pair for branch in branches}
+            branches += [Branch(pair, time) for pair in sorted(new)]
         for branch in list(branches) if reading != READINGS[2] else ():
             pair = branch.beyond()
             if pair is None:
