@@ -21,7 +21,8 @@ from benchmarks.tracked_solids import GAPS, SPEEDS, STILL, sliding
 from standoff.solids import SolidTracker
 from standoff.solids.asked import DEFAULT
 from standoff.solids.spatial.distance import spatial_distance
-from standoff_studies.paper.nonconvex_runs import PAIRS, Branch, motion
+from standoff_studies.paper.nonconvex_runs import Branch, motion
+from standoff_studies.paper.nonconvex_scene import PAIRS
 
 INSIDE = {
     "box": so.shapes.box(1.0, 0.8, 0.6),

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -135,7 +135,8 @@ def _place(body: so.Body, pose: Pose, point: Array, out: Array) -> Place:
 def kinds() -> tuple[tuple[Kind, ...], ...]:
     """Return the stationary pairs that are found of each drawn pair of ellipsoids that overlap, and
     in front the depth's own, at what ``so.distance`` answers."""
-    rng, found = np.random.default_rng(5), []
+    rng = np.random.default_rng(5)
+    found: list[tuple[Kind, ...]] = []
     while len(found) < BODIES:
         axes, turn = rng.uniform(0.3, 1.0, (2, 3)), Rotation.random(random_state=rng).as_matrix()
         middle = rng.normal(size=3)
@@ -300,7 +301,10 @@ def followed(first: float, last: float) -> Followed:
     true = [-least_way(path.pose(time[k]))[0] for k in looks]
     return Followed(
         time[::EVERY],
-        *(np.array(each) for each in (true, told, np.array(own)[::EVERY], nearest)),
+        np.array(true),
+        np.array(told),
+        np.array(own[::EVERY]),
+        np.array(nearest),
         tracker,
     )
 
@@ -421,7 +425,8 @@ def _rate(way: tuple[float, float]) -> float:
 
 def _draw() -> Figure:
     figure = style.new_figure(height=6.2)
-    above, below = figure.subfigures(2, 1, height_ratios=(1.15, 1.0))
+    halves: Any = figure.subfigures(2, 1, height_ratios=(1.15, 1.0))
+    above, below = halves
     left, right = above.subplots(1, 2, width_ratios=(1.35, 1.0))
     _draw_pairs(left)
     _draw_saddle(right)

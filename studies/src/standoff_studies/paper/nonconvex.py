@@ -229,7 +229,8 @@ def shown(known: Truth, one: Run) -> list[Shown]:
 def _draw() -> Figure:
     figure = style.new_figure(height=10.0)
     known, start, every = truth(), run(READINGS[1]), run(READINGS[2])
-    pictures, graphs = figure.subfigures(2, 1, height_ratios=(1.0, 2.4))
+    halves: Any = figure.subfigures(2, 1, height_ratios=(1.0, 2.4))
+    pictures, graphs = halves
     instants = shown(known, start)
     for axes, instant in zip(pictures.subplots(1, PICTURES), instants, strict=True):
         _draw_chains(axes, instant, start)

@@ -120,9 +120,9 @@ def ellipse(a: float, b: float) -> ConicArc:
 def in_bore(swing: float = SWING) -> InBore:
     """Track the pin from both of its minima, by the printed law on the one pair of patches."""
     path, time = ToAndFro(swing), even_times(0.0, PERIOD, STEP)
-    bodies = [so.shapes.planar_loop([curve]) for curve in (ellipse(BORE, BORE), ellipse(*AXES))]
+    bore, pin = (so.shapes.planar_loop([each]) for each in (ellipse(BORE, BORE), ellipse(*AXES)))
     law = PaperLaw(gain=GAIN, switching="none", saturation="zero", solve="plain", restarts=False)
-    tracker = Tracker(*bodies, STEP, law=law)
+    tracker = Tracker(bore, pin, STEP, law=law)
     rows, still = motion_along(REST, path, time), Pose.identity()
     looks = np.arange(0, len(time), EVERY)
     told = np.empty((len(looks), 2, 3))
@@ -130,13 +130,13 @@ def in_bore(swing: float = SWING) -> InBore:
         own = np.array([AXES[0] * math.cos(angle), AXES[1] * math.sin(angle)])
         x, y = path.pose(0.0).translation[:2] + own
         on_bore, on_pin = math.atan2(x, -y), math.atan2(own[0] / AXES[0], -own[1] / AXES[1])
-        places = [(("edge", 0), (u % (2.0 * math.pi),)) for u in (on_bore, on_pin)]
-        state = begun(tracker, (REST, path), *places)
-        q = [[u for _, (u,) in places]]
+        q = [[u % (2.0 * math.pi) for u in (on_bore, on_pin)]]
+        on_a, on_b = ((("edge", 0), (u,)) for u in q[0])
+        state = begun(tracker, (REST, path), on_a, on_b)
         q += [buf.out[[K.OUT_Q, K.OUT_Q + 2]].tolist() for buf in stepped(tracker, state, rows)]
         for row, k in enumerate(looks):
-            on = [(("edge", 0), (u,)) for u in q[k]]
-            system = pair_system(*bodies, still, path.pose(time[k]), *on)
+            on_both = ((("edge", 0), (u,)) for u in q[k])
+            system = pair_system(bore, pin, still, path.pose(time[k]), *on_both)
             least = np.linalg.eigvalsh(system.H)[0]
             told[row, branch] = np.linalg.norm(system.dR), least, np.abs(system.Psi).max()
     poses = [path.pose(t) for t in time[looks].tolist()]
@@ -145,7 +145,9 @@ def in_bore(swing: float = SWING) -> InBore:
         time[looks],
         [apart for apart, _ in minima],
         [np.cos(angle) > 0.0 for _, angle in minima],
-        *np.moveaxis(told, 2, 0),
+        told[:, :, 0],
+        told[:, :, 1],
+        told[:, :, 2],
         np.array([so.distance(*_solids(), still, pose).distance for pose in poses]),
         tracker,
     )

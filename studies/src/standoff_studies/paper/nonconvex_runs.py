@@ -7,7 +7,7 @@ branches there are, and which of them answers: the one with the least distance.
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,7 @@ from standoff_studies.paper.nonconvex_scene import (
     seams,
     truth,
 )
-from standoff_studies.paper.pair_simulation import REST, Place
+from standoff_studies.paper.pair_simulation import REST
 
 PATHS: tuple[Path, Path] = (REST, MOTION)
 ROUND = 0
@@ -132,7 +132,7 @@ class Branch:
         return PAIRS.index((on[0], on[1]))
 
 
-def nearest_places(pair: int, time: float) -> tuple[Place, Place]:
+def nearest_places(pair: int, time: float) -> tuple[Any, Any]:
     """Return where a branch begins: the nearest points of two lobes, as a broad phase finds."""
     poses = [path.pose(time) for path in PATHS]
     found = distance(tracker(pair).a, tracker(pair).b, *poses)
@@ -180,8 +180,9 @@ def run(reading: str, leave_out: int | None = None) -> Run:
                 merged += 1
             else:
                 branches.append(Branch(pair, time))
-    columns = [np.array(column) for column in zip(*told, strict=True)]
-    return Run(*columns, handed, merged, tuple(tracker(pair) for pair in range(len(PAIRS))))
+    columns: list[Any] = [np.array(column) for column in zip(*told, strict=True)]
+    rest: list[Any] = [handed, merged, tuple(tracker(pair) for pair in range(len(PAIRS)))]
+    return Run(*[*columns, *rest])
 
 
 def _told(branches: list[Branch], apart: list[float], switched: bool) -> tuple[object, ...]:
@@ -250,7 +251,8 @@ class Library(NamedTuple):
 @cache
 def library() -> Library:
     """Track the two chains as solids, with all local minima."""
-    solids = SolidTracker(*(chain(balls) for balls in BALLS), minima=FAR)
+    a, b = (chain(balls) for balls in BALLS)
+    solids = SolidTracker(a, b, minima=FAR)
     frames = np.arange(0, len(truth().time), ASKED_EVERY)
     poses = [truth().poses[k] for k in frames]
     state = solids.start(REST.pose(0.0), poses[0])

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies import Body, Edge, Face
-from standoff.geometry import ConicArc, Plane
+from standoff.geometry import ConicArc, Plane, Surface
 from standoff.geometry.quadrics import sphere_atlas
 from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Path, Pose, Spiral, Twist
@@ -58,7 +58,7 @@ def _rim(x: float) -> Edge:
     return Edge(ConicArc(x * X, rim * Y, rim * Z))
 
 
-def _round(x: float) -> tuple[object, ...]:
+def _round(x: float) -> tuple[Surface, ...]:
     return sphere_atlas(RADIUS * np.eye(3), x * X)
 
 
