@@ -483,5 +483,6 @@ def _draw_saddle(axes: Axes) -> None:
     axes.contour(shift, shift, over, levels=[0.0], colors=style.BLACK, linewidths=1.4)
     axes.plot(0.0, 0.0, "o", color=style.GREEN)
     axes.set(xlabel="both alike [length]", ylabel="against each other [length]")
+    axes.set_xticks([-0.1, 0.0, 0.1])
     axes.set_aspect("equal")
     axes.grid(visible=False)
