@@ -34,6 +34,8 @@ def test_any_direction_of_loops_and_curves() -> None:
 
 def test_loops_find_their_place() -> None:
     hole, island = square(1.0), square(0.5)
+    # also if the outer loop is alone in a list, and the holes are given beside it
+    assert so.PlanarSolid.from_loops([square(2.0)], [hole]).area == pytest.approx(12.0)
     solid = so.PlanarSolid.from_loops([hole, square(2.0)])
     assert solid.area == pytest.approx(12.0)
     assert solid.kinds == ("convex",) * 4 + ("reflex",) * 4

@@ -110,6 +110,7 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         given = tuple(outer)
         limit = None if join is None else positive(join, "join")
         if given and not any(isinstance(each, Curve) for each in given):
+            given += tuple(inner)
             found = solids_of(given, name=name, join=limit)
             if len(found) != 1:
                 raise BodyError(

@@ -46,6 +46,8 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("basin", "Basins of attraction", "Control theory", "control", "attraction"),
     _entry("lyapunov", "Lyapunov levels", "Control theory", "control", "lyapunov"),
     _entry("normals", "The normals' set", "Reference [28]", "normals", "comparison"),
+    _entry("nonconvex", "Only another switching", "Beyond convex bodies", "nonconvex", "nonconvex"),
+    _entry("furthest", "The furthest points", "Beyond convex bodies", "furthest", "furthest"),
     _entry("variants", "The variants as printed", "Variants and verdict", "variants", "variants"),
     _entry("cost", "What an update costs", "Variants and verdict", "update_cost", "update_cost"),
     _entry("verdict", "Verdict", "Variants and verdict", "verdict", "verdict"),

@@ -93,12 +93,12 @@ ITEMS: tuple[Item, ...] = (
     Item("the equations of ref. [28]", "done", "",
          "[the normals' set](normals.md)", ("normals",)),
     Item("interpenetration (future work)", "done", "beyond the paper",
-         "[penetration](../penetration.md)", ()),
+         "[penetration](../penetration.md)", ("furthest",)),
     Item("haptic device and rendering (application)", "partial", "a simulated device",
          "[the virtual coupler](../coupler.md)", ("5",)),
     Item("bodies that are not convex, broad phase (future work)", "partial",
          "a frame of such bodies in contact takes milliseconds",
-         "[solids](../solids.md), [worlds](../worlds.md)", ()),
+         "[solids](../solids.md), [worlds](../worlds.md)", ("nonconvex",)),
 )
 # fmt: on
 
