@@ -48,12 +48,12 @@ LOOKS = {
 """Marker and colour of each method, by the first word of its key."""
 
 LETTERS = {
-    "A": ("A", (8, -5)),
-    "B": ("B", (8, 5)),
-    "C": ("C", (-9, 5)),
-    "D": ("D", (-9, -5)),
-    "E": ("E", (0, 9)),
-    "drawn": ("p", (0, -10)),
+    "A": ("A", (9, -2)),
+    "B": ("B", (9, 2)),
+    "C": ("C", (-10, 2)),
+    "D": ("D", (-10, -2)),
+    "E": ("E", (0, 10)),
+    "drawn": ("p", (0, -11)),
 }
 """The letter of each work, and where it stands beside a mark [points], so that marks that are close
 keep theirs."""
@@ -67,7 +67,10 @@ FEW = 27
 LARGE = 1000
 """Corners of a polyhedron for one control point of the patches, from which it counts as large."""
 
-WITH_STARTS = ("vclip", "gjk", "planes", "newton", "blind", "paper", "own")
+UNTRIED = {"blind": "as Newton"}
+"""Methods that begin at a place, but whose starts were not tried."""
+
+WITH_STARTS = ("vclip", "gjk", "planes", "newton", "paper", "own")
 """Methods that begin at a place; the others search all places in every frame."""
 
 ON_PATCHES = ("gjk", "algebra", "boxes", "planes", "newton", "blind")
@@ -140,7 +143,7 @@ def _cells(row: Row) -> tuple[str, ...]:
         f"{row.error:.0e}",
         f"{row.off:.0e}",
         str(row.failures),
-        f"{row.arrived} of {row.tried}" if row.tried else "needs none",
+        f"{row.arrived} of {row.tried}" if row.tried else UNTRIED.get(row.method, "needs none"),
     )
 
 
@@ -320,7 +323,7 @@ def draw(rows: Rows) -> Figure:
     for k, key in enumerate(WITH_STARTS):
         marker, colour = LOOKS[key]
         own = of(rows, key)
-        at = [works.index(work) + 0.1 * (k - 3) for work in own]
+        at = [works.index(work) + 0.11 * (k - 2.5) for work in own]
         parts = [row.arrived / row.tried for row in own.values()]
         below.plot(at, parts, marker, color=colour, markersize=7)
     below.set_xticks(range(len(works)), works)

@@ -87,7 +87,9 @@ def _judged(cost: float, points: Array | None, due: Proximity) -> Frame:
     return Frame(cost, error, off, off > WRONG)
 
 
-def on_patches(work: Work, step: Step, *, cold: bool = False, most: int | None = None) -> Found:
+def on_patches(
+    work: Work, step: Step, *, cold: bool = False, starts: bool = True, most: int | None = None
+) -> Found:
     """A method on the patches, frame after frame; after one that failed, from the true places.
 
     `cold`: it keeps nothing from frame to frame, so one frame of each stretch is enough, of `most`
@@ -103,7 +105,7 @@ def on_patches(work: Work, step: Step, *, cold: bool = False, most: int | None =
             found.frames.append(frame)
             if frame.failed:
                 spots = spots_of(work, due)
-    for time, start in () if cold else work.tried():
+    for time, start in work.tried() if starts and not cold else ():
         due = work.truth(time)
         _, frame = _stepped(work, step, (spot_at(start[0]), spot_at(start[1])), time, due)
         found.arrived += not frame.failed
@@ -213,23 +215,24 @@ COLD_STRETCHES = {"A": 12, "B": 12, "C": 6, "D": 8, "E": 2, "drawn": 1}
 SOLVED = 12
 """Stretches of which a frame is given to the resultants."""
 
-MOST_PAIRS = {"gjk": 100, "boxes": 4}
+MOST_PAIRS = {"gjk": 50, "boxes": 4}
 """Drawn pairs that these methods are given, for the time they take; the others are given all."""
 
 TO_A_POINT = ("A", "B", "D")
 """The work in which B is a point."""
 
 
-def _step_by_step(work: Work, step: Step, frames: int) -> Found:
-    """A few steps a frame; from a start at most so many frames."""
-    found = on_patches(work, step)
-    found.arrived = found.tried = 0
+def _planes(work: Work) -> Found | None:
+    """Thompson's steps: from a start as many as the paper's law takes at its low gain."""
+    if work.name not in TO_A_POINT:
+        return None
+    found = on_patches(work, newton.tangent_plane, starts=False)
     for time, start in work.tried():
         spots: Spots = (spot_at(start[0]), spot_at(start[1]))
         due = work.truth(time)
-        for _ in range(frames):
+        for _ in range(SLOWLY):
             before = spots
-            spots, frame = _stepped(work, step, spots, time, due)
+            spots, frame = _stepped(work, newton.tangent_plane, spots, time, due)
             if all(
                 now.patch == last.patch and (now.q == last.q).all()
                 for now, last in zip(spots, before, strict=True)
@@ -264,14 +267,10 @@ METHODS: dict[str, Method] = {
         "interval Newton (Snyder)",
         lambda w: on_patches(w, intervals.minimise, cold=True, most=COLD_STRETCHES[w.name]),
     ),
-    "planes": Method(
-        "tangent planes (Thompson)",
-        lambda w: _step_by_step(w, newton.tangent_plane, SLOWLY) if w.name in TO_A_POINT else None,
-    ),
+    "planes": Method("tangent planes (Thompson)", _planes),
     "newton": Method("Newton (Nelson, Cohen)", lambda w: on_patches(w, newton.newton)),
     "blind": Method(
-        "two Newton steps, no test",
-        lambda w: _step_by_step(w, newton.blind, newton.MOST // newton.BLIND_STEPS),
+        "two Newton steps, no test", lambda w: on_patches(w, newton.blind, starts=False)
     ),
     "paper": Method("the paper's law, as printed", lambda w: on_trackers(w, "paper")),
     "own": Method("the library's tracked frame", lambda w: on_trackers(w, "own")),
