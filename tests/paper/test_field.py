@@ -23,7 +23,7 @@ WINDOWS = {"A point": (0.3, 2.0), "B": (0.2, 1.1), "C": (1.0, 7.7), "D patches":
 """Instants of the simulations, away from switches and near them [s]."""
 
 
-DRAWN = 400
+DRAWN = 1000
 """Drawn pairs that the committed study has at least."""
 
 

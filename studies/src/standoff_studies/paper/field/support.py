@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper.field.shells import Jet, Shell, Spot, held
@@ -69,7 +70,7 @@ def _higher(shell: Shell, spot: Spot, at: Jet, step: Array, way: Array) -> tuple
     return None
 
 
-def _uphill(at: Jet, slope: Array, free: Array, way: Array) -> Array:
+def _uphill(at: Jet, slope: Array, free: NDArray[np.bool_], way: Array) -> Array:
     """Newton's step to the top; where the height is not concave the steepest way, up to a side."""
     curved = -at.bends[np.ix_(free, free)] @ way
     concave = np.linalg.eigvalsh(curved).min() > 0.0
