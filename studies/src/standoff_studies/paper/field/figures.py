@@ -267,7 +267,7 @@ def _own(rows: Rows) -> tuple[Statement, ...]:
         ),
         own_statement(
             "The field",
-            f"the library's frame takes {_range(r.median for r in own.values())} evaluations, at "
+            f"evaluations of the library's frame: {_range(r.median for r in own.values())}, at "
             f"worst {max(r.worst for r in own.values()):.3g}, with witness errors up to "
             f"{max(r.error for r in own.values()):.0e}",
             "it is the paper's feedforward, then a Newton step at the new pose. Its certificate is "
