@@ -51,6 +51,7 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("variants", "The variants as printed", "Variants and verdict", "variants", "variants"),
     _entry("cost", "What an update costs", "Variants and verdict", "update_cost", "update_cost"),
     _entry("verdict", "Verdict", "Variants and verdict", "verdict", "verdict"),
+    _entry("field", "The field on the same work", "The field", "field", "as_committed"),
 )
 # fmt: on
 

@@ -153,15 +153,14 @@ def _random_turn(rng: np.random.Generator) -> Array:
 def _drawn(number: int) -> Pair:
     rng = np.random.default_rng([SEED_OF_PAIRS, number])
     a, b = (lens_of_patches().transformed(np.diag(rng.uniform(*STRETCHED, 3))) for _ in range(2))
+    return set_apart(f"drawn pair {number}", a, b, rng)
+
+
+def set_apart(name: str, a: Body, b: Body, rng: np.random.Generator) -> Pair:
+    """Draw a place of B beside A, both of patches with three faces, and its motion."""
     way, gap = rng.normal(size=3), float(rng.uniform(*GAPS))
     path = _apart(a, b, _random_turn(rng), way, gap, rng)
-    return Pair(
-        f"drawn pair {number}",
-        a,
-        b,
-        path,
-        lambda rng: (on_a_face(3, rng), on_a_face(3, rng)),
-    )
+    return Pair(name, a, b, path, lambda rng: (on_a_face(3, rng), on_a_face(3, rng)))
 
 
 def _vaults(*, alone: bool) -> Pair:
