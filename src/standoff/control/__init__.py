@@ -9,14 +9,17 @@ from standoff.control.growth import (
     sampled_roots,
     stability_limit,
     steady_error,
+    step_bounds,
 )
 from standoff.control.lyapunov import LyapunovLevels, lyapunov_level
+from standoff.control.steps import StepGrowth, step_growth
 from standoff.tracking.feedback import growth_factor
 
 __all__ = [
     "Basin",
     "LeastCurvature",
     "LyapunovLevels",
+    "StepGrowth",
     "basin",
     "euler_min_gain",
     "growth_factor",
@@ -30,5 +33,7 @@ __all__ = [
     "sampled_roots",
     "stability_limit",
     "steady_error",
+    "step_bounds",
+    "step_growth",
     "witness_speeds",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -13,9 +13,12 @@ from standoff.checks.arrays import finite
 from standoff.checks.numbers import not_negative, positive
 from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.control.curvature import least_curvature
-from standoff.control.tolerances import REAL_EXTREME
+from standoff.control.growth import stability_limit, step_bounds
+from standoff.control.tolerances import NEAR_ONE, REAL_EXTREME
 from standoff.errors import StandoffError
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.tracking.feedback import least_step, whole_steps
 from standoff.tracking.inputs import check_body, check_pair
 
 
@@ -27,13 +30,19 @@ def min_gain(
     spin: float = 0.0,
     *,
     distance: Any,
+    start: float | None = None,
+    time: float | None = None,
+    basin: float = math.inf,
+    integrator: str = "heun",
+    dt: float = 1e-3,
 ) -> float:
     """The least gain of the paper's law without feedforward for an error of the witness points.
 
     Without the feedforward b the witness points lag by |w_ff|/K. This bounds |w_ff| from how fast
-    the bodies may move and how little they may be curved (docs/laws.md); with that gain, and
-    K dt <= 1, neither witness point is ever farther than `error` from its true place, to first
-    order in the error over the bodies' radii of curvature.
+    the bodies may move and how little they may be curved (docs/laws.md). With that gain neither
+    witness point is ever farther than `error` from its true place, or, with a start error, from
+    `time` on: to first order in the errors over the bodies' radii of curvature, and stepped as
+    stated. With the feedforward, which leaves no such lag, give a speed of 0.
 
     Parameters
     ----------
@@ -49,6 +58,15 @@ def min_gain(
     distance : float or (least, most)
         The least distance of the bodies, or both ends of its range, length. A single number means a
         range without an upper end.
+    start : float, optional
+        Greatest distance of a witness point from its true place at the start, length.
+    time : float, optional
+        Time after which it must be within `error`, s.
+    basin : float, optional
+        Greatest start error from which the law is known to converge, such as the ``start_error`` of
+        ``standoff.control.lyapunov_level`` or ``step_growth``, length.
+    integrator, dt : optional
+        The law's and the tracker's, s; their own defaults if not given.
 
     Returns
     -------
@@ -62,11 +80,14 @@ def min_gain(
     TypeError
         Not a body.
     ValueError
-        Numbers that are negative, NaN or not in order; a planar body with a spatial one.
+        Numbers that are negative, NaN or not in order; a planar body with a spatial one; a start
+        error beyond the basin; a time shorter than a step. No stable gain is enough: the message
+        has the step that would do, and the error that this step can keep.
 
     See Also
     --------
     max_gain : the largest stable gain of an integrator.
+    standoff.control.step_growth : from which starts a pair's errors fall at a gain.
     standoff.control.euler_min_gain : with the feedforward.
     """
     check_pair(a, b)
@@ -74,7 +95,77 @@ def min_gain(
     least, most = _range(distance)
     skins = a.radius + b.radius
     motion = speed + (spin * reach(b) if spin else 0.0), spin
-    return _greatest_lag(a, b, (least + skins, most + skins), motion) / error
+    lag = _greatest_lag(a, b, (least + skins, most + skins), motion)
+    wanted = _Wanted(error, lag, *_start(start, time, basin), integrator)
+    if (lag == 0.0 and wanted.start <= error) or math.isinf(lag):
+        return lag
+    dt = positive(dt, "dt")
+    z = wanted.least(dt)
+    return z / dt if z is not None else wanted.refuse(dt)
+
+
+class _Wanted(NamedTuple):
+    """What a gain is to do."""
+
+    error: float
+    speed: float  # of the witness points: they lag by it over K
+    start: float
+    time: float
+    integrator: str
+
+    def worst(self, z: Array, dt: float) -> Array:
+        """The greatest error from the time on, for each K dt: it goes from the start's to the lag's
+        monotonically."""
+        growth, forcing = step_bounds(self.integrator, z)
+        lag = forcing * dt * self.speed / (1.0 - growth)
+        if self.start <= self.error:
+            return lag
+        left = growth ** whole_steps(self.time, dt)
+        return np.maximum(lag, lag + left * (self.start - lag))
+
+    def least(self, dt: float) -> float | None:
+        """The least K dt that is enough."""
+        limit = stability_limit(self.integrator) * (1.0 - NEAR_ONE)
+        return least_step(lambda z: self.worst(z, dt) - self.error, limit)
+
+    def refuse(self, dt: float) -> NoReturn:
+        """Say which step is short enough, and which error this one can keep."""
+        z = stability_limit(self.integrator) * np.linspace(0.0, 1.0, 1001)[1:-1]
+        shorter = dt
+        while (enough := self.least(shorter)) is None:
+            shorter *= 0.5
+        raise StandoffError(
+            f"error = {self.error}: no gain below "
+            f"{stability_limit(self.integrator) / dt:.6g} 1/s (so.max_gain) is enough with "
+            f"{self.integrator} at dt = {dt}. The least error that one keeps is "
+            f"{self.worst(z, dt).min():.3g}; or take a gain of {enough / shorter:.6g} at "
+            f"dt = {shorter:.3g}.",
+            "error",
+            self.error,
+        )
+
+
+def _start(start: float | None, time: float | None, basin: float) -> tuple[float, float]:
+    """The start error and the time for it, both checked; zeros if there is none."""
+    basin = positive(basin, "basin", infinite=True)
+    if start is None and time is None:
+        return 0.0, 0.0
+    if start is None or time is None:
+        raise StandoffError(f"start = {start}, time = {time}: give both, or neither.", "start")
+    if start == 0.0:
+        raise StandoffError(
+            "start = 0: must be positive; without an error at the start leave start and time out.",
+            "start",
+            start,
+        )
+    if positive(start, "start") > basin:
+        raise StandoffError(
+            f"start = {start} is beyond the basin, {basin:.6g}, from which the law is known to "
+            "converge: begin there or nearer, or with Tracker.start, which searches.",
+            "start",
+            start,
+        )
+    return start, positive(time, "time")
 
 
 def _greatest_lag(

@@ -23,3 +23,13 @@ CHECK_ROUNDOFF: Final = 1e-15
 """Dimensionless. The compiled check of a rotation fuses sums and products, NumPy's does not: a
 defect this close to the one that is allowed counts as above it, so that the kernels refuse no pose
 that many at once have passed. Four roundoffs of 1."""
+
+NEAR_LIMIT: Final = 0.9
+"""Magnitude of a growth factor (dimensionless) above which a gain beyond 1/dt is warned of. At it
+Euler and Heun take 22 steps for a tenth, and of a circle beside a point the starts that settle lie
+within 22 degrees (tan x / x = 2 / (K dt)); they shrink with the root of what is left to the limit.
+"""
+
+WHOLE_STEPS: Final = 1e-9
+"""A time this part below a whole number of steps counts as that number: far above roundoff of the
+quotient, far below a step."""
