@@ -141,7 +141,7 @@ class RefusedRowsWarning(RuntimeWarning):
 
 
 class GainWarning(RuntimeWarning):
-    """A gain of the paper's law is so near its limit that errors hardly fall from step to step."""
+    """A gain is so near its limit that errors hardly fall from step to step."""
 
 
 def not_installed(library: str, extra: str = "cli") -> str:

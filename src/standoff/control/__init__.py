@@ -9,7 +9,6 @@ from standoff.control.growth import (
     sampled_roots,
     stability_limit,
     steady_error,
-    step_bounds,
 )
 from standoff.control.lyapunov import LyapunovLevels, lyapunov_level
 from standoff.control.steps import StepGrowth, step_growth
@@ -33,7 +32,6 @@ __all__ = [
     "sampled_roots",
     "stability_limit",
     "steady_error",
-    "step_bounds",
     "step_growth",
     "witness_speeds",
 ]

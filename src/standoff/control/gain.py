@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.polynomial import Polynomial
 
 from standoff.bodies.body import Body
@@ -13,12 +14,12 @@ from standoff.checks.arrays import finite
 from standoff.checks.numbers import not_negative, positive
 from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.control.curvature import least_curvature
-from standoff.control.growth import stability_limit, step_bounds
-from standoff.control.tolerances import NEAR_ONE, REAL_EXTREME
+from standoff.control.growth import stability_limit
+from standoff.control.tolerances import REAL_EXTREME, WHOLE_STEPS
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
-from standoff.tracking.feedback import least_step, whole_steps
+from standoff.tracking.feedback import growth_factor
 from standoff.tracking.inputs import check_body, check_pair
 
 
@@ -30,19 +31,16 @@ def min_gain(
     spin: float = 0.0,
     *,
     distance: Any,
-    start: float | None = None,
-    time: float | None = None,
-    basin: float = math.inf,
-    integrator: str = "heun",
-    dt: float = 1e-3,
+    start: tuple[float, ...] | None = None,
+    step: tuple[str, float] = ("heun", 1e-3),
 ) -> float:
     """The least gain of the paper's law without feedforward for an error of the witness points.
 
     Without the feedforward b the witness points lag by |w_ff|/K. This bounds |w_ff| from how fast
     the bodies may move and how little they may be curved (docs/laws.md). With that gain neither
-    witness point is ever farther than `error` from its true place, or, with a start error, from
-    `time` on: to first order in the errors over the bodies' radii of curvature, and stepped as
-    stated. With the feedforward, which leaves no such lag, give a speed of 0.
+    witness point is ever farther than `error` from its true place (with a start: from its time on),
+    to first order in the errors over the bodies' radii of curvature. With the feedforward there is
+    no such lag: give a speed of 0.
 
     Parameters
     ----------
@@ -58,15 +56,12 @@ def min_gain(
     distance : float or (least, most)
         The least distance of the bodies, or both ends of its range, length. A single number means a
         range without an upper end.
-    start : float, optional
-        Greatest distance of a witness point from its true place at the start, length.
-    time : float, optional
-        Time after which it must be within `error`, s.
-    basin : float, optional
-        Greatest start error from which the law is known to converge, such as the ``start_error`` of
-        ``standoff.control.lyapunov_level`` or ``step_growth``, length.
-    integrator, dt : optional
-        The law's and the tracker's, s; their own defaults if not given.
+    start : (error, time) or (error, time, basin), optional
+        Greatest distance of a witness point from its true place at the start, length; the time
+        after which it must be within `error`, s; the greatest start error that is known to settle,
+        such as the ``start_error`` of ``standoff.control.step_growth``, length.
+    step : (integrator, dt), optional
+        Of the law and of the tracker; their defaults if not given.
 
     Returns
     -------
@@ -81,13 +76,13 @@ def min_gain(
         Not a body.
     ValueError
         Numbers that are negative, NaN or not in order; a planar body with a spatial one; a start
-        error beyond the basin; a time shorter than a step. No stable gain is enough: the message
-        has the step that would do, and the error that this step can keep.
+        beyond its basin; a time shorter than a step. Or no stable gain is enough: the message has
+        the step that would do, and the error that can be kept with this one.
 
     See Also
     --------
+    standoff.control.step_growth : from which starts a pair settles at a gain.
     max_gain : the largest stable gain of an integrator.
-    standoff.control.step_growth : from which starts a pair's errors fall at a gain.
     standoff.control.euler_min_gain : with the feedforward.
     """
     check_pair(a, b)
@@ -96,76 +91,78 @@ def min_gain(
     skins = a.radius + b.radius
     motion = speed + (spin * reach(b) if spin else 0.0), spin
     lag = _greatest_lag(a, b, (least + skins, most + skins), motion)
-    wanted = _Wanted(error, lag, *_start(start, time, basin), integrator)
-    if (lag == 0.0 and wanted.start <= error) or math.isinf(lag):
-        return lag
-    dt = positive(dt, "dt")
-    z = wanted.least(dt)
-    return z / dt if z is not None else wanted.refuse(dt)
+    wanted = _Wanted(error, lag, *_checked_start(start))
+    integrator, dt = step
+    # errors lag by at most |w_ff|/K: by Heun's method at all stable gains, by the others up to 1/dt
+    limit = stability_limit(integrator)
+    z = np.linspace(0.0, limit if integrator == "heun" else 1.0, 2002)[1:-1]
+    gain, short = wanted.least_gain(z, integrator, positive(dt, "dt")), dt
+    while gain is None:
+        short *= 0.5
+        gain = wanted.least_gain(z, integrator, short)
+    if short < dt:
+        raise StandoffError(
+            f"error = {error}: no gain is enough with {integrator} at dt = {dt}, where they end at "
+            f"{limit / dt:.6g} (so.max_gain). A step of {short:.3g} would do, with a gain of "
+            f"{gain:.6g}; with this step one keeps {wanted.worst(z, integrator, dt).min():.3g}.",
+            "error",
+        )
+    return gain
+
+
+def _checked_start(start: Any) -> tuple[float, float]:
+    """A start's error and time; no error if there is none."""
+    if start is None:
+        return 0.0, math.inf
+    if not isinstance(start, tuple) or len(start) not in (2, 3):
+        raise StandoffError(f"start = {shown(start)}: give (error, time).", "start", start)
+    named = zip(("start's error", "start's time", "start's basin"), start, strict=False)
+    far, time, *basin = (positive(x, name, infinite="basin" in name) for name, x in named)
+    if basin and far > basin[0]:
+        raise StandoffError(
+            f"start = {start}: its error is beyond {basin[0]:.6g}, up to which starts are known to "
+            "settle. Begin as near as that, or by Tracker.start, which searches.",
+            "start",
+        )
+    return far, time
 
 
 class _Wanted(NamedTuple):
-    """What a gain is to do."""
+    """What a gain is to do: lengths, length/s and s."""
 
     error: float
-    speed: float  # of the witness points: they lag by it over K
+    lag: float
     start: float
     time: float
-    integrator: str
 
-    def worst(self, z: Array, dt: float) -> Array:
-        """The greatest error from the time on, for each K dt: it goes from the start's to the lag's
-        monotonically."""
-        growth, forcing = step_bounds(self.integrator, z)
-        lag = forcing * dt * self.speed / (1.0 - growth)
+    def worst(self, z: Array, integrator: str, dt: float) -> Array:
+        """The greatest error from the time on, by z = K dt: what is left turns into the lag."""
+        lag = self.lag * dt / z
         if self.start <= self.error:
             return lag
-        left = growth ** whole_steps(self.time, dt)
-        return np.maximum(lag, lag + left * (self.start - lag))
+        steps = math.floor(self.time / dt * (1.0 + WHOLE_STEPS))
+        if steps < 1:
+            raise StandoffError(
+                f"start's time = {self.time} is shorter than a step of {dt}: give at least that, "
+                f"or a step of {self.time} or less.",
+                "start",
+            )
+        left = np.abs(growth_factor(integrator, -z)) ** steps
+        return np.asarray(lag + np.maximum(left * (self.start - lag), 0.0))
 
-    def least(self, dt: float) -> float | None:
-        """The least K dt that is enough."""
-        limit = stability_limit(self.integrator) * (1.0 - NEAR_ONE)
-        return least_step(lambda z: self.worst(z, dt) - self.error, limit)
+    def least_gain(self, z: Array, integrator: str, dt: float) -> float | None:
+        """The least gain that is enough among K dt = z, inf if none ever is, None if none of z."""
+        if math.isinf(self.lag) or (self.lag == 0.0 and self.start <= self.error):
+            return self.lag
+        enough = np.flatnonzero(self.worst(z, integrator, dt) <= self.error)
+        if not len(enough):
+            return None
+        ends = np.append(z[0] * WHOLE_STEPS, z)[enough[0] : enough[0] + 2]
 
-    def refuse(self, dt: float) -> NoReturn:
-        """Say which step is short enough, and which error this one can keep."""
-        z = stability_limit(self.integrator) * np.linspace(0.0, 1.0, 1001)[1:-1]
-        shorter = dt
-        while (enough := self.least(shorter)) is None:
-            shorter *= 0.5
-        raise StandoffError(
-            f"error = {self.error}: no gain below "
-            f"{stability_limit(self.integrator) / dt:.6g} 1/s (so.max_gain) is enough with "
-            f"{self.integrator} at dt = {dt}. The least error that one keeps is "
-            f"{self.worst(z, dt).min():.3g}; or take a gain of {enough / shorter:.6g} at "
-            f"dt = {shorter:.3g}.",
-            "error",
-            self.error,
-        )
+        def excess(z: float) -> float:
+            return float(self.worst(np.array(z), integrator, dt)) - self.error
 
-
-def _start(start: float | None, time: float | None, basin: float) -> tuple[float, float]:
-    """The start error and the time for it, both checked; zeros if there is none."""
-    basin = positive(basin, "basin", infinite=True)
-    if start is None and time is None:
-        return 0.0, 0.0
-    if start is None or time is None:
-        raise StandoffError(f"start = {start}, time = {time}: give both, or neither.", "start")
-    if start == 0.0:
-        raise StandoffError(
-            "start = 0: must be positive; without an error at the start leave start and time out.",
-            "start",
-            start,
-        )
-    if positive(start, "start") > basin:
-        raise StandoffError(
-            f"start = {start} is beyond the basin, {basin:.6g}, from which the law is known to "
-            "converge: begin there or nearer, or with Tracker.start, which searches.",
-            "start",
-            start,
-        )
-    return start, positive(time, "time")
+        return float(scipy.optimize.brentq(excess, *ends, xtol=1e-18)) / dt
 
 
 def _greatest_lag(

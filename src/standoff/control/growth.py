@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from standoff.checks.names import choice
 from standoff.checks.numbers import not_negative, positive
-from standoff.checks.real_numbers import real_array, shown
+from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import REAL_LIMIT
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import Array
 from standoff.kernels.paper import integrators as I
 from standoff.tracking.feedback import Feedback, growth_factor
 
@@ -69,50 +68,6 @@ def stability_limit(integrator: str) -> float:
     crossings = np.concatenate([(factor - 1.0).roots(), (factor + 1.0).roots()])
     real = -crossings.real[np.abs(crossings.imag) <= REAL_LIMIT]
     return float(real[real > REAL_LIMIT].min())
-
-
-def step_bounds(integrator: str, z: Any) -> tuple[Array, Array]:
-    """What a step does to an error while the minimum moves, without feedforward.
-
-    With q' = -K (q - q*(t)) a step of length h from an error e ends at one of at most
-    growth |e| + forcing h w, for speeds |q*'| of at most w, however they change within the step.
-    So errors stay within their lag, forcing h w / (1 - growth), once they are. It is w/K for Heun
-    at every stable gain, and for the others at least up to z = 1.
-
-    Parameters
-    ----------
-    integrator : "euler", "heun", "midpoint" or "rk4"
-    z : float or array
-        K h, dimensionless.
-
-    Returns
-    -------
-    (growth, forcing) : arrays of the shape of z
-        |R(-z)|, and the total weight of q*' over the step.
-
-    Raises
-    ------
-    ValueError
-        Unknown integrator, or `z` is not numeric.
-    """
-    number = I.NAMES.index(choice(integrator, "integrator", I.NAMES))
-    z, stages = real_array(z), int(I.STAGES[number])
-    ends = np.unique(np.append(I.NODES[number, :stages], [0.0, 1.0]))
-    # of e, and of how far q* moves between the nodes, in h w
-    parts = np.append(1.0, np.diff(ends)).reshape(-1, *[1] * z.ndim)
-    is_error = np.arange(len(ends)).reshape(parts.shape) == 0
-
-    def off(c: float) -> Array:
-        """The error of a q that rests until the node c."""
-        upto = np.append(True, ends[1:] <= c).reshape(parts.shape)
-        return np.where(is_error, parts, -parts * upto) * np.ones_like(z)
-
-    stage, last = np.zeros_like(off(1.0)), off(1.0)
-    for i in range(stages):
-        c = float(I.NODES[number, i])
-        stage = off(c) - c * z * stage
-        last = last - float(I.WEIGHTS[number, i]) * z * stage
-    return np.abs(last[0]), np.abs(last[1:]).sum(axis=0)
 
 
 def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
@@ -40,8 +40,6 @@ from standoff.tracking.rows import StateRow, motion_row
 LONGEST = 20.0
 # Points kept on each curve, its end included.
 KEPT = 25
-# Part of the least slope at an end where the rim is looked at: within the level.
-PART = 0.999
 # The search for the least end: first simplex, and curves followed per parameter.
 SPREAD = 0.1
 SEARCH = 20
@@ -72,9 +70,6 @@ class LyapunovLevels(NamedTuple):
     repaired : int
         How many of the two poses were given with a rounded rotation, and were replaced by the
         nearest one.
-    start_error : float
-        Where both witness points are nearer than this to those of the optimum, V is within its
-        level on every curve: from there the law converges, length.
     """
 
     feature_a: Feature
@@ -89,7 +84,6 @@ class LyapunovLevels(NamedTuple):
     energies: Array
     singular: NDArray[np.bool_]
     repaired: int
-    start_error: float
 
     def inside(self, part: float = 1.0) -> tuple[Array, Array]:
         """Points of the curves within `part` of the level of V, and of that of E: (., n) each.
@@ -150,14 +144,12 @@ def lyapunov_level(
 
     found = _followed(follow, _directions(len(q0), directions, seed))
     curves, slopes, energies, singular, ways = (np.array(x) for x in zip(*found, strict=True))
-    slope = float(slopes[:, -1].min())
-    rim = [x for curve in found for x in on_curve(curve.slopes, curve.points, [PART * slope])]
     return LyapunovLevels(
         feature_a=best.feature_a,
         feature_b=best.feature_b,
         optimum=q0,
         metric=metric,
-        level=0.5 * slope**2,
+        level=float(0.5 * slopes[:, -1].min() ** 2),
         energy_level=float(energies[:, -1].min()),
         directions=ways,
         curves=curves,
@@ -165,13 +157,7 @@ def lyapunov_level(
         energies=energies,
         singular=singular,
         repaired=best.repaired,
-        start_error=float(min(system.offset(q, q0) for q in rim)),
     )
-
-
-def on_curve(slopes: Array, points: Array, wanted: ArrayLike) -> Array:
-    """Parameters along a curve where sqrt(2 V) has some values, between the points kept."""
-    return np.stack([np.interp(wanted, slopes, column) for column in points.T], axis=-1)
 
 
 def _not_definite(best: Proximity) -> StandoffError:
@@ -309,18 +295,10 @@ class System:
         g = (sign * self.out[queries.ERRORS : queries.FEEDFORWARD])[self.kept]
         return g, H[np.ix_(self.kept, self.kept)], tangents.T @ tangents, 0.5 * float(dR @ dR)
 
-    def offset(self, q: Array, rest: Array) -> float:
-        """The greater of both witness points' distances from those at other parameters."""
-        points = []
-        for at in (q, rest):
-            self.at(at)
-            jets = self.out[queries.JETS : queries.ERRORS].reshape(2, 6, 3)
-            points.append(jets[:, 0].copy())
-        return float(np.linalg.norm(points[0] - points[1], axis=1).max())
-
-    def slope(self, q: Array, L: Array) -> float:
-        """sqrt(2 V) in the metric L L'."""
-        return float(np.linalg.norm(np.linalg.solve(L, self.at(q)[0])))
+    def points(self, q: Array) -> Array:
+        """Both witness points, (2, 3)."""
+        self.at(q)
+        return self.out[queries.JETS : queries.ERRORS].reshape(2, 6, 3)[:, 0].copy()
 
     def definiteness(self, H: Array, L: Array) -> float:
         """The least eigenvalue of H in the metric L L'."""

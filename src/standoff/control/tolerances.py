@@ -35,6 +35,5 @@ SETTLED_RUN: Final = 1e-6
 """A run has settled where the projection of the witness vector on the tangents is below this part
 of its length."""
 
-NEAR_ONE: Final = 1e-6
-"""Part of the greatest stable gain that the search for the least one leaves out: there a step hardly
-lowers an error, and the bound of the lag divides by nothing."""
+WHOLE_STEPS: Final = 1e-9
+"""A time this part below a whole number of steps is that number: far above roundoff."""

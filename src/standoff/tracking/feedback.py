@@ -8,9 +8,7 @@ that others can be synthesised; each here is a small immutable object for ``so.P
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
@@ -18,7 +16,6 @@ from numbers import Complex, Real
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from standoff.checks.names import choice
@@ -28,7 +25,7 @@ from standoff.errors import GainWarning, StandoffError, StandoffTypeError, Unrea
 from standoff.kernels.paper import integrators as I
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
-from standoff.tracking.tolerances import NEAR_LIMIT, WHOLE_STEPS
+from standoff.tracking.tolerances import NEAR_LIMIT
 
 Array = NDArray[np.float64]
 
@@ -138,64 +135,29 @@ def _growth(integrator: str, z: tuple[complex, ...]) -> Array:
         return np.asarray(np.abs(growth_factor(integrator, np.array(z))))
 
 
-def _named(feedback: Feedback) -> tuple[str, Any]:
-    return ("gain", feedback.gain) if isinstance(feedback, Linear) else ("feedback", feedback)
-
-
-def warn_near_limit(feedback: Feedback, integrator: str, dt: float) -> None:
-    """Warn of a gain so near its limit that errors hardly fall, and large ones may stay."""
-    rates = np.asarray(feedback.rates(), dtype=complex) * dt
-    growth = float(_growth(integrator, tuple(rates.tolist()))[np.abs(rates) > 1.0].max(initial=0))
-    if growth > NEAR_LIMIT:
-        name, value = _named(feedback)
-        warnings.warn(
-            f"{name} = {value} is stable for {integrator} at dt = {dt}, but a step multiplies "
-            f"small errors by {growth:.6g} in magnitude: a tenth is left after "
-            f"{math.ceil(math.log(0.1) / math.log(growth))} steps, and larger ones may stay for "
-            f"ever. They fall fastest near a gain of 1/dt = {1.0 / dt:.6g}; "
-            "standoff.control.step_growth shows from which starts those of a pair fall.",
-            GainWarning,
-            stacklevel=8,  # from so.Tracker(...)
-        )
-
-
-def whole_steps(time: float, dt: float) -> int:
-    """The number of whole steps within a time; ValueError where there is none."""
-    count = math.floor(positive(time, "time") / dt * (1.0 + WHOLE_STEPS))
-    if count < 1:
-        raise StandoffError(
-            f"time = {time} is shorter than a step, dt = {dt}, in which no gain acts: give {dt} or "
-            f"more, or a step of at most {time}.",
-            "time",
-            time,
-        )
-    return count
-
-
-def least_step(excess: Callable[[Any], Any], most: float) -> float | None:
-    """The least z = K h up to `most` at which `excess`, of an array of them, is not above zero."""
-    tried = np.linspace(0.0, most, 1001)[1:]
-    found = np.flatnonzero(excess(tried) <= 0.0)
-    if not len(found):
-        return None
-    z, before = float(tried[found[0]]), 1e-12 * most if found[0] == 0 else tried[found[0] - 1]
-    if excess(np.array([before]))[0] <= 0.0:
-        return float(before)
-    return float(scipy.optimize.brentq(lambda x: excess(np.array([x]))[0], before, z, xtol=1e-18))
-
-
 def check_stable(feedback: Feedback, integrator: str, dt: float) -> None:
-    """Raise ValueError where the sampled error loop would grow."""
+    """Raise ValueError where the sampled error loop would grow; warn where it hardly falls."""
     rates = np.asarray(feedback.rates(), dtype=complex)
     growth = _growth(integrator, tuple((rates * dt).tolist()))
+    name, value = (
+        ("gain", feedback.gain) if isinstance(feedback, Linear) else ("feedback", feedback)
+    )
     if not (growth < STABLE).all():
-        name, value = _named(feedback)
         raise StandoffError(
             f"{name} = {value} is not stable for {integrator} at dt = {dt}: a step would multiply "
             f"its errors by {growth.max():.6g}. A linear gain must stay below "
             f"{max_gain(integrator, dt):.6g} (so.max_gain).",
             name,
             value,
+        )
+    slowest = float(growth[np.abs(rates * dt) > 1.0].max(initial=0.0))
+    if slowest > NEAR_LIMIT:
+        warnings.warn(
+            f"{name} = {value}: with {integrator} at dt = {dt} a step multiplies small errors by "
+            f"{slowest:.6g} in magnitude, and larger ones may stay for ever. They fall best near "
+            f"1/dt = {1.0 / dt:.6g}; standoff.control.step_growth shows which starts settle.",
+            GainWarning,
+            stacklevel=9,  # from so.Tracker(...)
         )
 
 
@@ -380,10 +342,7 @@ class MotionGain:
 
     Without feedforward the errors settle at b/K. In the metric of the tangents both are lengths,
     so this K keeps the projection error of the witness vector at `error`; where `most` cuts it,
-    which ``answer.counts.saturations`` counts, it does not.
-
-    With a start error and a time K is twice that, and never so low that half of `error` would
-    be left of the start after that time: from then on both halves together stay below `error`.
+    which ``answer.counts.saturations`` counts, it does not (``so.min_gain`` tells before a run).
 
     Attributes
     ----------
@@ -391,61 +350,30 @@ class MotionGain:
         Wanted projection error [length], positive.
     least, most : float or None
         Bounds of K [1/s]; by default 0.1/dt and 0.75 ``so.max_gain``.
-    start : float or None
-        Projection error at the start [length].
-    time : float or None
-        Time after which it must be below `error` [s].
     """
 
     error: float
     least: float | None = None
     most: float | None = None
-    start: float | None = None
-    time: float | None = None
 
     def __post_init__(self) -> None:
         positive(self.error, "error")
-        for name in ("least", "most", "start", "time"):
+        for name in ("least", "most"):
             if getattr(self, name) is not None:
                 positive(getattr(self, name), name)
-        if (self.start is None) != (self.time is None):
-            raise StandoffError(f"{self}: give both start and time, or neither.", "start")
 
     def resolved(self, integrator: str, dt: float) -> MotionGain:
         least = DEFAULT_LEAST / dt if self.least is None else float(self.least)
         most = DEFAULT_MOST * max_gain(integrator, dt) if self.most is None else float(self.most)
-        if self._held < self.error:
-            least = max(least, self._decay(integrator, dt, most))
         if least > most:
             raise StandoffError(
                 f"{self}: its least gain {least:.6g} is above its greatest {most:.6g}."
             )
         return replace(self, least=least, most=most)
 
-    @property
-    def _held(self) -> float:
-        """The error at which the motion is to hold: half of it, where a start takes the rest."""
-        far = self.start is not None and self.start > self.error
-        return 0.5 * float(self.error) if far else float(self.error)
-
-    def _decay(self, integrator: str, dt: float, most: float) -> float:
-        """The least gain that leaves `_held` of the start; every gain up to `most` must."""
-        count, part = whole_steps(self.time or 0.0, dt), self._held / (self.start - self._held)  # type: ignore[operator]
-        slowest = float(abs(growth_factor(integrator, -most * dt)))
-        if slowest**count > part:
-            needed = dt * math.ceil(math.log(part) / math.log(slowest))
-            raise StandoffError(
-                f"{self}: with {integrator} at dt = {dt} and gains up to {most:.6g} it takes "
-                f"{needed:.6g} s. Give that time, a shorter step, or a `most` nearer 1/dt.",
-                "time",
-                self.time,
-            )
-        z = least_step(lambda z: np.abs(growth_factor(integrator, -z)) ** count - part, most * dt)
-        return most if z is None else z / dt
-
     def packed(self) -> tuple[int, float, Array]:
         least, most = (-float(rate) for rate in self.rates())
-        return K.FEEDBACK_MOTION, most, np.array([self._held, least, most])
+        return K.FEEDBACK_MOTION, most, np.array([float(self.error), least, most])
 
     def rates(self) -> Array:
         """Those of the least and of the greatest gain."""

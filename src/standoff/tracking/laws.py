@@ -201,21 +201,14 @@ class PaperLaw(Law):
         else:
             feedback = self.feedback.resolved(self.integrator, dt)
             found = replace(self, saturation=saturation, feedback=feedback)
-        from standoff.tracking.feedback import warn_near_limit
-
         found.check_step(dt)
-        warn_near_limit(found._loop(dt), self.integrator, dt)
         return found
 
-    def _loop(self, dt: float) -> Any:
-        from standoff.tracking.feedback import Linear
-
-        return Linear(self.gain or 1.0 / dt) if self.feedback is None else self.feedback
-
     def check_step(self, dt: float) -> None:
-        from standoff.tracking.feedback import check_stable
+        from standoff.tracking.feedback import Linear, check_stable
 
-        check_stable(self._loop(dt), self.integrator, dt)
+        loop = Linear(self.gain or 1.0 / dt) if self.feedback is None else self.feedback
+        check_stable(loop, self.integrator, dt)
 
 
 DEFAULT_LAW = PredictorCorrector()

@@ -25,11 +25,5 @@ defect this close to the one that is allowed counts as above it, so that the ker
 that many at once have passed. Four roundoffs of 1."""
 
 NEAR_LIMIT: Final = 0.9
-"""Magnitude of a growth factor (dimensionless) above which a gain beyond 1/dt is warned of. At it
-Euler and Heun take 22 steps for a tenth, and of a circle beside a point the starts that settle lie
-within 22 degrees (tan x / x = 2 / (K dt)); they shrink with the root of what is left to the limit.
-"""
-
-WHOLE_STEPS: Final = 1e-9
-"""A time this part below a whole number of steps counts as that number: far above roundoff of the
-quotient, far below a step."""
+"""Magnitude of a growth factor (dimensionless) above which a gain beyond 1/dt is warned of: a tenth
+takes 22 steps, and beside a circle starts settle within 22 degrees (tan x / x = 2 / (K dt))."""
