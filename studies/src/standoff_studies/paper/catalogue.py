@@ -41,6 +41,7 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("arrivals", "Which starts arrive", "Convergence", "convergence", "as_committed"),
     _entry("voronoi", "Voronoi regions", "Voronoi regions", "voronoi_figure", "regions"),
     _entry("gains", "Gains: decay and lag", "Control theory", "control", "decay_and_lag"),
+    _entry("lower", "The lower limit of K", "Control theory", "control", "lower_limit"),
     _entry("stability", "Stability", "Control theory", "control", "stability"),
     _entry("feedback", "Four feedbacks", "Control theory", "control", "four_feedbacks"),
     _entry("basin", "Basins of attraction", "Control theory", "control", "attraction"),
