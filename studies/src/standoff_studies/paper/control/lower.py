@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -15,13 +14,13 @@ from matplotlib.figure import Figure
 import standoff as so
 from standoff.bodies import Body
 from standoff.control import growth_factor, lyapunov_level, step_growth
-from standoff.errors import GainWarning, StandoffError
+from standoff.errors import StandoffError
 from standoff.geometry import ConicArc
 from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Pose, Twist
 from standoff_studies.paper import style
 from standoff_studies.paper.control.lag import DT, Case, random_case
-from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
+from standoff_studies.paper.figure import Artwork, Statement, measured_by
 from standoff_studies.paper.law_words import law_words
 
 LEVEL = 1e-3
@@ -74,9 +73,7 @@ def beside() -> Pose:
 def tracker(integrator: str, gain: float) -> so.Tracker:
     """The raw law on the circle and a point."""
     law = so.PaperLaw(integrator=integrator, gain=gain, solve="plain", switching="none")
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", GainWarning)  # it is what is measured here
-        return so.Tracker(circle(), so.shapes.point(), DT, law=law)
+    return so.Tracker(circle(), so.shapes.point(), DT, law=law)
 
 
 def errors(integrator: str, gain: float, start: float, steps: int) -> Array:
