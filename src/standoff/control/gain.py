@@ -91,6 +91,9 @@ def min_gain(
     skins = a.radius + b.radius
     motion = speed + (spin * reach(b) if spin else 0.0), spin
     lag = _greatest_lag(a, b, (least + skins, most + skins), motion)
+    for given, form in ((start or (1, 1), "start = (error, time)"), (step, "step = (name, dt)")):
+        if not isinstance(given, tuple) or len(given) not in (2, 3 if given is start else 2):
+            raise StandoffError(f"Give {form}, not {shown(given)}.", form.split(" ")[0], given)
     wanted = _Wanted(error, lag, *_checked_start(start))
     integrator, dt = step
     # errors lag by at most |w_ff|/K: by Heun's method at all stable gains, by the others up to 1/dt
@@ -104,8 +107,7 @@ def min_gain(
         raise StandoffError(
             f"error = {error}: no gain is enough with {integrator} at dt = {dt}, where they end at "
             f"{limit / dt:.6g} (so.max_gain). A step of {short:.3g} would do, with a gain of "
-            f"{gain:.6g}; with this step one keeps {wanted.worst(z, integrator, dt).min():.3g}.",
-            "error",
+            f"{gain:.6g}; with this step one keeps {wanted.worst(z, integrator, dt).min():.3g}."
         )
     return gain
 
@@ -114,14 +116,12 @@ def _checked_start(start: Any) -> tuple[float, float]:
     """A start's error and time; no error if there is none."""
     if start is None:
         return 0.0, math.inf
-    if not isinstance(start, tuple) or len(start) not in (2, 3):
-        raise StandoffError(f"start = {shown(start)}: give (error, time).", "start", start)
     named = zip(("start's error", "start's time", "start's basin"), start, strict=False)
     far, time, *basin = (positive(x, name, infinite="basin" in name) for name, x in named)
     if basin and far > basin[0]:
         raise StandoffError(
             f"start = {start}: its error is beyond {basin[0]:.6g}, up to which starts are known to "
-            "settle. Begin as near as that, or by Tracker.start, which searches.",
+            "settle: begin there, or by Tracker.start, which searches.",
             "start",
         )
     return far, time

@@ -48,8 +48,8 @@ def step_growth(
 ) -> StepGrowth:
     """Before a run: from which starts do errors fall with a tracker's gain, integrator and step?
 
-    Where V falls over two steps from every start within a level, all of them converge. It is tried
-    on the curves of `levels`, at 49 errors each: between them it is not proven.
+    Where V falls over two steps from every start within a level, all of them converge. Tried on the
+    curves of `levels` at 49 errors each: between them it is not proven.
 
     Parameters
     ----------
