@@ -239,3 +239,14 @@ def test_bad_bodies() -> None:
         so.min_gain(EGG, planar_body(), 1e-3, 1.0, distance=0.3)
     with pytest.raises(ValueError, match="least curvature of -1"):
         control.witness_speeds(-1.0, 1.0, (0.1, 1.0), 1.0)
+
+
+def test_eulers_lag_is_bounded_up_to_one_step() -> None:
+    """A minimum that turns with each step: e <- (1 - z) e -+ h w, which ends at h w / (2 - z)."""
+    gain, dt, lag, error = 4000.0 / 3.0, 1e-3, 4.0 / 3.0, 0.0
+    for _ in range(60):
+        error = (1.0 - gain * dt) * error - math.copysign(dt * lag, (gain * dt - 1.0) * error)
+    assert abs(error) > 1.9 * lag / gain
+    with pytest.raises(ValueError, match="no gain is enough with euler"):
+        so.min_gain(BALL, POINT, 1e-3, 2.0, distance=0.25, step=("euler", dt))
+    assert so.min_gain(BALL, POINT, 1e-3, 2.0, distance=0.25) == pytest.approx(gain)
