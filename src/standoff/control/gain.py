@@ -91,7 +91,8 @@ def min_gain(
     skins = a.radius + b.radius
     motion = speed + (spin * reach(b) if spin else 0.0), spin
     lag = _greatest_lag(a, b, (least + skins, most + skins), motion)
-    for given, form in ((start or (1, 1), "start = (error, time)"), (step, "step = (name, dt)")):
+    pairs: Any = (start or (1.0, 1.0), "start = (error, time)"), (step, "step = (name, dt)")
+    for given, form in pairs:
         if not isinstance(given, tuple) or len(given) not in (2, 3 if given is start else 2):
             raise StandoffError(f"Give {form}, not {shown(given)}.", form.split(" ")[0], given)
     wanted = _Wanted(error, lag, *_checked_start(start))
@@ -144,8 +145,7 @@ class _Wanted(NamedTuple):
         if steps < 1:
             raise StandoffError(
                 f"start's time = {self.time} is shorter than a step of {dt}: give at least that, "
-                f"or a step of {self.time} or less.",
-                "start",
+                f"or a step of {self.time} or less."
             )
         left = np.abs(growth_factor(integrator, -z)) ** steps
         return np.asarray(lag + np.maximum(left * (self.start - lag), 0.0))

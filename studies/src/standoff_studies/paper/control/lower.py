@@ -286,8 +286,8 @@ def lower_limit() -> Artwork:
         text=(
             "Above, two lines that fall straight with K, have a dip at 1000 1/s and rise to the "
             "limit of 2000; all marks of small errors lie on them, those of large ones too up to "
-            "1800 1/s. Middle, a curve that falls from 1.2 rad at 1000 1/s to zero at 2000, marks "
-            "just below it. Below, three rows of dots, all left of the line at 1."
+            "1800 1/s. Middle, a curve that falls from 0.84 rad at 1500 1/s to zero at 2000, marks "
+            "just below it. Below, three rows of dots, none beyond the line at 1."
         ),
         draw=_draw,
         tables=_tables(),
@@ -425,7 +425,7 @@ def _draw_times(axes: Axes) -> None:
 
 
 def _draw_starts(axes: Axes) -> None:
-    gains = np.append(np.linspace(900.0, 1999.0, 200), 1999.9)
+    gains = np.append(np.linspace(1450.0, 1999.0, 200), 1999.9)
     limits = [cycle(gain) for gain in gains]
     axes.plot(gains, limits, **style.line(2), label="tan x / x = 2/(K h)")
     for k, (name, words) in enumerate(INTEGRATORS.items()):
@@ -435,7 +435,7 @@ def _draw_starts(axes: Axes) -> None:
     for part, mark, words in zip(BESIDE, "^v", ("settles", "never settles"), strict=True):
         ends = [part * cycle(gain) for gain in TRIED]
         axes.plot(TRIED, ends, mark, color=style.BLACK, markersize=4.0, label=words)
-    axes.set(xlabel="K [1/s]", ylabel="start error [rad]", xlim=(950.0, 2010.0), ylim=(0.0, 1.35))
+    axes.set(xlabel="K [1/s]", ylabel="start error [rad]", xlim=(1450.0, 2010.0), ylim=(0.0, 1.0))
     axes.legend(loc="upper right")
 
 
