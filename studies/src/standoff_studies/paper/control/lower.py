@@ -84,7 +84,7 @@ def errors(integrator: str, gain: float, start: float, steps: int) -> Array:
     still = np.zeros((steps, 6))
     _, answers = law.run(state, home, np.tile(beside().matrix, (steps, 1, 1)), still, still)
     points = np.asarray(answers.point_a)
-    return np.abs(np.arctan2(points[:, 1], points[:, 0]) - AT_ANGLE)
+    return np.asarray(np.abs(np.arctan2(points[:, 1], points[:, 0]) - AT_ANGLE))
 
 
 def predicted(integrator: str, gain: float) -> int:
@@ -178,7 +178,9 @@ def promise(case: Case) -> Promise:
         return Promise(case.kind, math.nan, math.nan, None)
     law = so.Tracker(case.a, case.b, DT, law=so.PaperLaw(gain=gain, feedforward=False))
     twists = Twist.zero(), case.twist_b
-    state, answers = law.start_from(Pose.identity(), poses[0], *places, *twists), []
+    on_a, on_b = places
+    state = law.start_from(Pose.identity(), poses[0], on_a, on_b, *twists)
+    answers = []
     for pose in poses[1:]:
         state, answer = law.step(state, Pose.identity(), pose, *twists)
         answers.append(answer)
@@ -258,7 +260,8 @@ def online(wanted: float) -> Online:
     least = so.min_gain(body, point, half, 0.0, distance=0.3, start=start)
     gain = so.feedback.MotionGain(half, least=least, most=1.0 / DT)
     law = so.Tracker(body, point, DT, law=so.PaperLaw(feedback=gain, feedforward=False))
-    state, seen, cut = law.start_from(home, path.pose(0.0), *places, *twists), [], 0
+    on_a, on_b = places
+    state, seen, cut = law.start_from(home, path.pose(0.0), on_a, on_b, *twists), [], 0
     for k in range(1, 10 * FRAMES + 1):
         state, answer = law.step(state, home, path.pose(k * DT), *twists)
         seen.append(answer.residual)
@@ -407,7 +410,7 @@ def _draw_times(axes: Axes) -> None:
         axes.plot(fine, time, **style.line(k), label=f"predicted, {words}")
         for start, mark in ((NEAR, "o"), (FAR, "x")):
             steps = np.array([steps_needed(name, gain, start) for gain in GAINS])
-            size = {"markersize": 8.5 - 3.5 * k, "markerfacecolor": "none"}
+            size: dict[str, Any] = {"markersize": 8.5 - 3.5 * k, "markerfacecolor": "none"}
             colour = style.COLOURS[k]
             label = f"from {start:g} rad, {words}"
             axes.plot(GAINS, DT * steps, mark, color=colour, label=label, **size)
@@ -430,7 +433,11 @@ def _draw_starts(axes: Axes) -> None:
     axes.plot(gains, limits, **style.line(2), label="tan x / x = 2/(K h)")
     for k, (name, words) in enumerate(INTEGRATORS.items()):
         told = [settles(name, gain).told for gain in TRIED]
-        look = {"color": style.COLOURS[k], "markersize": 8.5 - 3.5 * k, "markerfacecolor": "none"}
+        look: dict[str, Any] = {
+            "color": style.COLOURS[k],
+            "markersize": 8.5 - 3.5 * k,
+            "markerfacecolor": "none",
+        }
         axes.plot(TRIED, told, "o", label=f"step_growth, {words}", **look)
     for part, mark, words in zip(BESIDE, "^v", ("settles", "never settles"), strict=True):
         ends = [part * cycle(gain) for gain in TRIED]
