@@ -1,8 +1,4 @@
-"""What the steps of a law do to the errors of a pair at rest.
-
-In continuous time V falls wherever H is regular. A step changes H along its way: it multiplies |g|
-by R(-K h) only where K h or the error is small. Near the greatest gain little more is enough.
-"""
+"""What the steps of a law do to the errors of a pair at rest (docs/laws.md)."""
 
 from __future__ import annotations
 
@@ -58,6 +54,10 @@ def step_growth(
     pose_a, pose_b : Pose or what ``Pose.of`` reads
     levels : LyapunovLevels
         Of the same pair at these poses.
+
+    Returns
+    -------
+    StepGrowth
 
     Raises
     ------
