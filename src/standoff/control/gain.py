@@ -162,7 +162,7 @@ class _Wanted(NamedTuple):
         def excess(z: float) -> float:
             return float(self.worst(np.array(z), integrator, dt)) - self.error
 
-        return float(scipy.optimize.brentq(excess, *ends, xtol=1e-18)) / dt
+        return float(scipy.optimize.brentq(excess, *ends, xtol=np.finfo(float).tiny)) / dt
 
 
 def _greatest_lag(

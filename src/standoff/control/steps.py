@@ -17,7 +17,7 @@ from standoff.tracking import Tracker, distance
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.rows import AnswerRows
 
-SIZES = np.geomspace(1e-3, 0.999, 49)  # of the level's sqrt(2 V): errors tried on each curve
+SIZES = 0.999 * np.logspace(-3, 0, 49)  # of the level's sqrt(2 V): errors tried on each curve
 STEPS = 2  # Euler's turns an error round: what is of second order cancels over two
 
 
