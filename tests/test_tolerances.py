@@ -20,6 +20,7 @@ PLACES = [name for name in MODULES if name.endswith("tolerances.py")]
 # Small numbers outside of these files that are no tolerances.
 NO_TOLERANCE = {
     ("checks/numbers.py", "1e-50"): "the least length that a user may give",
+    ("control/gain.py", "1e-3"): "an option's default, the tracker's time",
     ("recording/plot.py", "1e-16"): "where an axis without values begins",
     ("scene/settings.py", "1e-3"): "an option's default, a time",
     ("simulation/simulated_device.py", "1e-4"): "an option's default, an inertia",

@@ -140,6 +140,10 @@ class RefusedRowsWarning(RuntimeWarning):
     with the first, and whether the numbers are in another order."""
 
 
+class GainWarning(RuntimeWarning):
+    """A gain is so near its limit that errors hardly fall from step to step."""
+
+
 def not_installed(library: str, extra: str = "cli") -> str:
     """What is said if a library is missing that comes with an extra of this package."""
     return (

@@ -15,6 +15,7 @@ POINT = so.shapes.point()
 BALL = so.shapes.ellipsoid(0.5, 0.5, 0.5)
 EGG = so.shapes.ellipsoid(1.0, 0.7, 0.5)
 BOX = so.shapes.box(1.0, 1.0, 1.0)
+FINE = "heun", 1e-9  # no gain is too large
 
 
 def turned(angle: float, low: float, high: float) -> np.ndarray:
@@ -121,21 +122,98 @@ def test_where_no_gain_is_enough() -> None:
     assert so.min_gain(EGG, BALL, 1e-3, 1.0, distance=0.0) == math.inf
     assert control.witness_speeds(0.0, 0.0, (0.1, 1.0), 1.0) == (math.inf, math.inf)
     assert so.min_gain(POINT, POINT, 1e-3, 1.0, 1.0, distance=0.0) == 0.0
-    assert math.isfinite(so.min_gain(BOX, BALL, 1e-3, 1.0, 1.0, distance=(0.1, 2.0)))
-    assert math.isfinite(so.min_gain(BALL, BOX, 1e-3, 1.0, 1.0, distance=(0.1, 2.0)))
+    for pair in ((BOX, BALL), (BALL, BOX)):
+        assert math.isfinite(so.min_gain(*pair, 1e-3, 1.0, 1.0, distance=(0.1, 2.0), step=FINE))
 
 
 def test_it_falls_with_the_error_and_rises_with_the_motion() -> None:
-    gain = so.min_gain(EGG, BALL, 1e-3, 1.0, 0.5, distance=0.3)
-    assert so.min_gain(EGG, BALL, 2e-3, 1.0, 0.5, distance=0.3) == pytest.approx(0.5 * gain)
-    assert so.min_gain(EGG, BALL, 1e-3, 2.0, 1.0, distance=0.3) == pytest.approx(2.0 * gain)
-    assert so.min_gain(EGG, BALL, 1e-3, 1.0, 0.5, distance=0.2) > gain
+    gain = so.min_gain(EGG, BALL, 1e-3, 1.0, 0.5, distance=0.3, step=FINE)
+    assert so.min_gain(EGG, BALL, 2e-3, 1.0, 0.5, distance=0.3, step=FINE) == pytest.approx(
+        0.5 * gain
+    )
+    assert so.min_gain(EGG, BALL, 1e-3, 2.0, 1.0, distance=0.3, step=FINE) == pytest.approx(
+        2.0 * gain
+    )
+    assert so.min_gain(EGG, BALL, 1e-3, 1.0, 0.5, distance=0.2, step=FINE) > gain
 
 
 def test_the_skin_of_a_swept_body_adds_to_the_distance() -> None:
     thick = so.min_gain(so.shapes.sphere(0.2), EGG, 1e-3, 1.0, distance=0.3)
     thin = so.min_gain(POINT, EGG, 1e-3, 1.0, distance=0.5)
     assert thick == pytest.approx(thin, rel=1e-12)
+
+
+def after(integrator: str, gain: float, start: float, lag: float, steps: int, dt: float) -> float:
+    """The error after some steps of q' = -K (q - w t), by the method as a textbook has it."""
+    q, t = start, 0.0
+
+    def rate(t: float, q: float) -> float:
+        return -gain * (q - lag * t)
+
+    for _ in range(steps):
+        k1 = rate(t, q)
+        half = rate(t + 0.5 * dt, q + 0.5 * dt * k1)
+        if integrator == "euler":
+            slope = k1
+        elif integrator == "heun":
+            slope = 0.5 * (k1 + rate(t + dt, q + dt * k1))
+        elif integrator == "midpoint":
+            slope = half
+        else:
+            again = rate(t + 0.5 * dt, q + 0.5 * dt * half)
+            slope = (k1 + 2.0 * half + 2.0 * again + rate(t + dt, q + dt * again)) / 6.0
+        q, t = q + dt * slope, t + dt
+    return abs(q - lag * t)
+
+
+@pytest.mark.parametrize("integrator", ["euler", "heun", "midpoint", "rk4"])
+def test_a_start_is_below_the_error_in_time(integrator: str, rng: np.random.Generator) -> None:
+    """A ball and a point, whose lag is v / (1 + d/r): just enough, and not with 2 % less."""
+    for _ in range(draws(40)):
+        dt, start, speed = 1e-3, 10.0 ** rng.uniform(-2, 0), rng.uniform(0.0, 0.3)
+        steps, error = int(rng.integers(8, 60)), start * 10.0 ** rng.uniform(-1.5, -0.5)
+        numbers = {"distance": 0.25, "start": (start, steps * dt), "step": (integrator, dt)}
+        try:
+            gain = so.min_gain(BALL, POINT, error, speed, **numbers)
+        except so.StandoffError:
+            continue
+        lag = speed / 1.5
+        # the lag on the start's own side: the minimum runs away from it
+        assert after(integrator, gain, start, -lag, steps, dt) <= error * (1.0 + 1e-9)
+        for later in (1, 7, 100):
+            assert after(integrator, gain, start, -lag, steps + later, dt) <= error * (1 + 1e-9)
+        assert after(integrator, 0.98 * gain, start, -lag, steps, dt) > error
+
+
+def test_what_outruns_every_stable_gain_is_told_with_a_step_that_would_do() -> None:
+    """22,471 beside a limit of 2000 was given without a word."""
+    given = {"error": 1e-4, "speed": 0.5, "spin": 0.2, "distance": 0.1}
+    with pytest.raises(ValueError, match=r"end at 2000 \(so\.max_gain\)\. A step of") as told:
+        so.min_gain(EGG, BALL, **given)
+    short, gain, kept = (float(x.rstrip(".,;")) for x in numbers_of(str(told.value))[-3:])
+    assert so.min_gain(EGG, BALL, **given, step=("heun", short)) == pytest.approx(gain, rel=1e-4)
+    assert gain < so.max_gain("heun", short)
+    assert so.min_gain(EGG, BALL, **(given | {"error": 1.01 * kept})) < 2000.0
+
+
+def numbers_of(text: str) -> list[str]:
+    return [x for x in text.split() if x[0].isdigit()]
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        (0.1, "Give start = \\(error, time\\), not 0.1"),
+        ((0.0, 0.1), "start's error = 0.0: must be positive"),
+        ((0.1, 0.0), "start's time = 0.0: must be positive"),
+        ((0.1, 5e-4), "0.0005 is shorter than a step of 0.001: give at least that"),
+        ((0.1, 0.1, 0.05), "beyond 0.05, up to which starts are known to settle"),
+        ((0.1, 2e-3), "A step of 0.00025 would do"),
+    ],
+)
+def test_bad_starts(start: object, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        so.min_gain(BALL, POINT, 1e-3, 0.1, distance=0.3, start=start)
 
 
 @pytest.mark.parametrize(
@@ -161,3 +239,14 @@ def test_bad_bodies() -> None:
         so.min_gain(EGG, planar_body(), 1e-3, 1.0, distance=0.3)
     with pytest.raises(ValueError, match="least curvature of -1"):
         control.witness_speeds(-1.0, 1.0, (0.1, 1.0), 1.0)
+
+
+def test_eulers_lag_is_bounded_up_to_one_step() -> None:
+    """A minimum that turns with each step: e <- (1 - z) e -+ h w, which ends at h w / (2 - z)."""
+    gain, dt, lag, error = 4000.0 / 3.0, 1e-3, 4.0 / 3.0, 0.0
+    for _ in range(60):
+        error = (1.0 - gain * dt) * error - math.copysign(dt * lag, (gain * dt - 1.0) * error)
+    assert abs(error) > 1.9 * lag / gain
+    with pytest.raises(ValueError, match="no gain is enough with euler"):
+        so.min_gain(BALL, POINT, 1e-3, 2.0, distance=0.25, step=("euler", dt))
+    assert so.min_gain(BALL, POINT, 1e-3, 2.0, distance=0.25) == pytest.approx(gain)

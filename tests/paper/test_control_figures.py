@@ -12,10 +12,11 @@ from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.feedbacks import BIAS, DRIFT, FRAMES, GAIN, bodies, pose, run
 from standoff_studies.paper.control.gains import lags
 from standoff_studies.paper.control.levels import case, runs, watched
+from standoff_studies.paper.control.lower import TRIED, cycle, settles
 from standoff_studies.paper.control.roots import loci
 
 LONGEST = ("basin", "lyapunov")
-KEYS = ("gains", "stability", "feedback", "basin", "lyapunov")
+KEYS = ("gains", "lower", "stability", "feedback", "basin", "lyapunov")
 
 
 @pytest.mark.parametrize(
@@ -61,6 +62,16 @@ def test_lag_stays_within_the_promise_of_the_least_gain() -> None:
     assert len(parts) == 6
     assert max(parts.values()) <= 1.0
     assert parts["ellipsoid - point"] > 0.9
+
+
+@pytest.mark.parametrize("gain", TRIED[::3])
+def test_starts_settle_up_to_the_cycle(gain: float) -> None:
+    """tan x / x = 2 / (K h) by hand, for both methods; what is said before stays within it."""
+    for integrator in ("heun", "euler"):
+        found = settles(integrator, gain)
+        assert found.inside
+        assert not found.outside
+        assert 0.8 * cycle(gain) <= found.told <= cycle(gain)
 
 
 def test_loci_leave_the_circle_at_the_limits() -> None:

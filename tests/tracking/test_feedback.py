@@ -151,6 +151,21 @@ def test_the_gain_of_the_motion_stays_in_its_bounds() -> None:
     assert lag(1.0, feedforward=False, feedback=slow) == lag(1.0, feedforward=False, feedback=fixed)
 
 
+@pytest.mark.parametrize(("most", "feedforward"), [(100.0, False), (300.0, False), (100.0, True)])
+def test_stages_whose_gain_is_cut_are_counted(most: float, feedforward: bool) -> None:
+    """|b| = 1 length/s beside a point; with the feedforward the gain has nothing to keep."""
+    feedback = so.feedback.MotionGain(5e-3, most=most, least=1.0)
+    law = so.PaperLaw(feedback=feedback, feedforward=feedforward)
+    tracker, twist = so.Tracker(DOME, POINT, dt=H, law=law), so.Twist([1.0, 0.0, 0.0], np.zeros(3))
+    poses = [so.Pose(np.eye(3), [-0.1 + k * H, 0.05, 2.0]) for k in range(11)]
+    state, cut = tracker.start(REST, poses[0], NO_TWIST, twist), 0
+    for pose in poses[1:]:
+        state, answer = tracker.step(state, REST, pose, NO_TWIST, twist)
+        cut += answer.counts.saturations
+    # Heun's two stages, and the rates at the answer, of each frame
+    assert cut in ((20, 30) if most < 200.0 and not feedforward else (0,))
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

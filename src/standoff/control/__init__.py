@@ -11,12 +11,14 @@ from standoff.control.growth import (
     steady_error,
 )
 from standoff.control.lyapunov import LyapunovLevels, lyapunov_level
+from standoff.control.steps import StepGrowth, step_growth
 from standoff.tracking.feedback import growth_factor
 
 __all__ = [
     "Basin",
     "LeastCurvature",
     "LyapunovLevels",
+    "StepGrowth",
     "basin",
     "euler_min_gain",
     "growth_factor",
@@ -30,5 +32,6 @@ __all__ = [
     "sampled_roots",
     "stability_limit",
     "steady_error",
+    "step_growth",
     "witness_speeds",
 ]

@@ -95,7 +95,7 @@ def basin(
     true = distance(tracker.a, tracker.b, pose_a, pose_b)
     if not true.certified or true.distance <= 0.0:
         raise StandoffError(f"The pair has no certified distance to compare with: {true!r}.")
-    frames = _Frames(tracker, flat_pose(pose_a), flat_pose(pose_b), steps)
+    frames = AtRest(tracker, flat_pose(pose_a), flat_pose(pose_b), steps)
     last = AnswerRows(np.array([frames.after(*start) for start in starts]))
     size = max(_size(tracker.a), _size(tracker.b), true.distance)
     off = np.maximum(
@@ -129,7 +129,7 @@ def _size(body: Body) -> float:
     return body.size if body.bounded else 0.0
 
 
-class _Frames:
+class AtRest:
     """A compiled run of frames at rest, its arrays made once.
 
     Without `Tracker.start_from`, which for each bad start would look whether the bodies overlap.

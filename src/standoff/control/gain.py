@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 from numpy.polynomial import Polynomial
 
 from standoff.bodies.body import Body
@@ -13,9 +14,12 @@ from standoff.checks.arrays import finite
 from standoff.checks.numbers import not_negative, positive
 from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.control.curvature import least_curvature
-from standoff.control.tolerances import REAL_EXTREME
+from standoff.control.growth import stability_limit
+from standoff.control.tolerances import REAL_EXTREME, WHOLE_STEPS
 from standoff.errors import StandoffError
+from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.tracking.feedback import growth_factor
 from standoff.tracking.inputs import check_body, check_pair
 
 
@@ -27,13 +31,16 @@ def min_gain(
     spin: float = 0.0,
     *,
     distance: Any,
+    start: tuple[float, ...] | None = None,
+    step: tuple[str, float] = ("heun", 1e-3),
 ) -> float:
     """The least gain of the paper's law without feedforward for an error of the witness points.
 
     Without the feedforward b the witness points lag by |w_ff|/K. This bounds |w_ff| from how fast
-    the bodies may move and how little they may be curved (docs/laws.md); with that gain, and
-    K dt <= 1, neither witness point is ever farther than `error` from its true place, to first
-    order in the error over the bodies' radii of curvature.
+    the bodies may move and how little they may be curved (docs/laws.md). With that gain neither
+    witness point is ever farther than `error` from its true place (with a start: from its time on),
+    to first order in the errors over the bodies' radii of curvature. With the feedforward there is
+    no such lag: give a speed of 0.
 
     Parameters
     ----------
@@ -49,6 +56,12 @@ def min_gain(
     distance : float or (least, most)
         The least distance of the bodies, or both ends of its range, length. A single number means a
         range without an upper end.
+    start : (error, time) or (error, time, basin), optional
+        Greatest distance of a witness point from its true place at the start, length; the time
+        after which it must be within `error`, s; the greatest start error that is known to settle,
+        such as the ``start_error`` of ``standoff.control.step_growth``, length.
+    step : (integrator, dt), optional
+        Of the law and of the tracker; their defaults if not given.
 
     Returns
     -------
@@ -62,10 +75,13 @@ def min_gain(
     TypeError
         Not a body.
     ValueError
-        Numbers that are negative, NaN or not in order; a planar body with a spatial one.
+        Numbers that are negative, NaN or not in order; a planar body with a spatial one; a start
+        beyond its basin; a time shorter than a step. Or no stable gain is enough: the message has
+        the step that would do, and the error that can be kept with this one.
 
     See Also
     --------
+    standoff.control.step_growth : from which starts a pair settles at a gain.
     max_gain : the largest stable gain of an integrator.
     standoff.control.euler_min_gain : with the feedforward.
     """
@@ -74,7 +90,79 @@ def min_gain(
     least, most = _range(distance)
     skins = a.radius + b.radius
     motion = speed + (spin * reach(b) if spin else 0.0), spin
-    return _greatest_lag(a, b, (least + skins, most + skins), motion) / error
+    lag = _greatest_lag(a, b, (least + skins, most + skins), motion)
+    pairs: Any = (start or (1.0, 1.0), "start = (error, time)"), (step, "step = (name, dt)")
+    for given, form in pairs:
+        if not isinstance(given, tuple) or len(given) not in (2, 3 if given is start else 2):
+            raise StandoffError(f"Give {form}, not {shown(given)}.", form.split(" ")[0], given)
+    wanted = _Wanted(error, lag, *_checked_start(start))
+    integrator, dt = step
+    # errors lag by at most |w_ff|/K: by Heun's method at all stable gains, by the others up to 1/dt
+    limit = stability_limit(integrator)
+    z = np.linspace(0.0, limit if integrator == "heun" else 1.0, 2002)[1:-1]
+    gain, short = wanted.least_gain(z, integrator, positive(dt, "dt")), dt
+    while gain is None:
+        short *= 0.5
+        gain = wanted.least_gain(z, integrator, short)
+    if short < dt:
+        raise StandoffError(
+            f"error = {error}: no gain is enough with {integrator} at dt = {dt}, where they end at "
+            f"{limit / dt:.6g} (so.max_gain). A step of {short:.3g} would do, with a gain of "
+            f"{gain:.6g}; with this step one keeps {wanted.worst(z, integrator, dt).min():.3g}."
+        )
+    return gain
+
+
+def _checked_start(start: Any) -> tuple[float, float]:
+    """A start's error and time; no error if there is none."""
+    if start is None:
+        return 0.0, math.inf
+    named = zip(("start's error", "start's time", "start's basin"), start, strict=False)
+    far, time, *basin = (positive(x, name, infinite="basin" in name) for name, x in named)
+    if basin and far > basin[0]:
+        raise StandoffError(
+            f"start = {start}: its error is beyond {basin[0]:.6g}, up to which starts are known to "
+            "settle: begin there, or by Tracker.start, which searches.",
+            "start",
+        )
+    return far, time
+
+
+class _Wanted(NamedTuple):
+    """What a gain is to do: lengths, length/s and s."""
+
+    error: float
+    lag: float
+    start: float
+    time: float
+
+    def worst(self, z: Array, integrator: str, dt: float) -> Array:
+        """The greatest error from the time on, by z = K dt: what is left turns into the lag."""
+        lag = self.lag * dt / z
+        if self.start <= self.error:
+            return lag
+        steps = math.floor(self.time / dt * (1.0 + WHOLE_STEPS))
+        if steps < 1:
+            raise StandoffError(
+                f"start's time = {self.time} is shorter than a step of {dt}: give at least that, "
+                f"or a step of {self.time} or less."
+            )
+        left = np.abs(growth_factor(integrator, -z)) ** steps
+        return np.asarray(lag + np.maximum(left * (self.start - lag), 0.0))
+
+    def least_gain(self, z: Array, integrator: str, dt: float) -> float | None:
+        """The least gain that is enough among K dt = z, inf if none ever is, None if none of z."""
+        if math.isinf(self.lag) or (self.lag == 0.0 and self.start <= self.error):
+            return self.lag
+        enough = np.flatnonzero(self.worst(z, integrator, dt) <= self.error)
+        if not len(enough):
+            return None
+        ends = np.append(z[0] * WHOLE_STEPS, z)[enough[0] : enough[0] + 2]
+
+        def excess(z: float) -> float:
+            return float(self.worst(np.array(z), integrator, dt)) - self.error
+
+        return float(scipy.optimize.brentq(excess, *ends, xtol=np.finfo(float).tiny)) / dt
 
 
 def _greatest_lag(

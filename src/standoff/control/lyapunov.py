@@ -129,7 +129,7 @@ def lyapunov_level(
     best = distance(a, b, pose_a, pose_b)
     if not best.certified or best.distance <= 0.0:
         raise StandoffError(f"The pair has no certified minimum: {best!r}.")
-    system = _System(a, b, pose_a, pose_b)
+    system = System(a, b, pose_a, pose_b)
     q0 = system.place(best.place_a, best.place_b)
     if not len(q0):
         raise StandoffError("Both witness points are vertices: there are no parameters to err.")
@@ -215,7 +215,7 @@ def _least(
     return min([best, *sought], key=value)
 
 
-def _outwards(system: _System, q0: Array, L: Array, direction: Array, rest: float) -> Curve:
+def _outwards(system: System, q0: Array, L: Array, direction: Array, rest: float) -> Curve:
     """Follow a direction e from the optimum until H is singular or a feature ends.
 
     By length: dq/dt ~ adj(H) L e and ds/dt ~ det H go smoothly through a singular H.
@@ -254,7 +254,7 @@ def _outwards(system: _System, q0: Array, L: Array, direction: Array, rest: floa
     return Curve(at[:, :n], at[:, n], energies, bool(len(ended.t_events[0])), direction)
 
 
-class _System:
+class System:
     """g, H, D and E of one mode of a pair at rest, also a little outside its features."""
 
     def __init__(self, a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> None:
@@ -294,6 +294,11 @@ class _System:
         dR = jets[0, 0] - jets[1, 0]
         g = (sign * self.out[queries.ERRORS : queries.FEEDFORWARD])[self.kept]
         return g, H[np.ix_(self.kept, self.kept)], tangents.T @ tangents, 0.5 * float(dR @ dR)
+
+    def points(self, q: Array) -> Array:
+        """Both witness points, (2, 3)."""
+        self.at(q)
+        return self.out[queries.JETS : queries.ERRORS].reshape(2, 6, 3)[:, 0].copy()
 
     def definiteness(self, H: Array, L: Array) -> float:
         """The least eigenvalue of H in the metric L L'."""

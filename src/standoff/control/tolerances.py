@@ -34,3 +34,6 @@ point."""
 SETTLED_RUN: Final = 1e-6
 """A run has settled where the projection of the witness vector on the tangents is below this part
 of its length."""
+
+WHOLE_STEPS: Final = 1e-9
+"""A time this part below a whole number of steps is that number: far above roundoff."""

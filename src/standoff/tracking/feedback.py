@@ -8,6 +8,7 @@ that others can be synthesised; each here is a small immutable object for ``so.P
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
@@ -20,10 +21,11 @@ from numpy.typing import ArrayLike, NDArray
 from standoff.checks.names import choice
 from standoff.checks.numbers import positive
 from standoff.checks.real_numbers import DEEPEST, real_array, shown
-from standoff.errors import StandoffError, StandoffTypeError, UnreadableNumbers
+from standoff.errors import GainWarning, StandoffError, StandoffTypeError, UnreadableNumbers
 from standoff.kernels.paper import integrators as I
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
+from standoff.tracking.tolerances import NEAR_LIMIT
 
 Array = NDArray[np.float64]
 
@@ -134,19 +136,28 @@ def _growth(integrator: str, z: tuple[complex, ...]) -> Array:
 
 
 def check_stable(feedback: Feedback, integrator: str, dt: float) -> None:
-    """Raise ValueError where the sampled error loop would grow."""
+    """Raise ValueError where the sampled error loop would grow; warn where it hardly falls."""
     rates = np.asarray(feedback.rates(), dtype=complex)
     growth = _growth(integrator, tuple((rates * dt).tolist()))
+    name, value = (
+        ("gain", feedback.gain) if isinstance(feedback, Linear) else ("feedback", feedback)
+    )
     if not (growth < STABLE).all():
-        name, value = (
-            ("gain", feedback.gain) if isinstance(feedback, Linear) else ("feedback", feedback)
-        )
         raise StandoffError(
             f"{name} = {value} is not stable for {integrator} at dt = {dt}: a step would multiply "
             f"its errors by {growth.max():.6g}. A linear gain must stay below "
             f"{max_gain(integrator, dt):.6g} (so.max_gain).",
             name,
             value,
+        )
+    slowest = float(growth[np.abs(rates * dt) > 1.0].max(initial=0.0))
+    if slowest > NEAR_LIMIT:
+        warnings.warn(
+            f"{name} = {value}: with {integrator} at dt = {dt} a step multiplies small errors by "
+            f"{slowest:.6g} in magnitude, and larger ones may stay for ever. They fall best near "
+            f"1/dt = {1.0 / dt:.6g}; standoff.control.step_growth shows which starts settle.",
+            GainWarning,
+            stacklevel=9,  # from so.Tracker(...)
         )
 
 
@@ -330,7 +341,8 @@ class MotionGain:
     """The paper's lower gain, computed online from the motion: K = |b| / error, within bounds.
 
     Without feedforward the errors settle at b/K. In the metric of the tangents both are lengths,
-    so this K keeps the projection error of the witness vector at `error`.
+    so this K keeps the projection error of the witness vector at `error`; where `most` cuts it,
+    which ``answer.counts.saturations`` counts, it does not (``so.min_gain`` tells before a run).
 
     Attributes
     ----------

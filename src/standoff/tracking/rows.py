@@ -65,8 +65,8 @@ class Counts(NamedTuple):
         solution, in which no step was made).
     saturations : int
         Components of a step that were zeroed at a boundary (``saturation="zero"``); with the
-        paper's law also components of a PI feedback's integral that were limited, and frames whose
-        integration overflowed and so changed nothing.
+        paper's law also components of a PI feedback's integral that were limited, stages whose
+        `MotionGain` was cut by its `most`, and frames whose integration overflowed.
     searches : int
         Searches over all directions of depth in penetration that began from scratch. None where the
         polytope of the frame before proved the depth.

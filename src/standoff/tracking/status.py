@@ -73,8 +73,8 @@ _ADVICE = {
         "tolerance."
     ),
     Status.TRACKING: (
-        "The law is still converging, or lags behind the motion: the lower bound holds; raise the "
-        "paper's gain towards so.max_gain, shorten the step, or give a finite tolerance."
+        "The law is still converging, or lags behind the motion: the lower bound holds; take the "
+        "paper's gain nearer 1/dt, shorten the step, or give a finite tolerance."
     ),
     Status.OVERLAPPING: (
         "The bodies are proven to overlap, but no depth is proven within the tolerance: the "

@@ -7,12 +7,14 @@ so that one solve of `law` serves all; for the paper's full-state linear law e i
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import active
 from standoff.kernels.compiler.decorators import kernel
+from standoff.kernels.pair.events import SATURATIONS
 from standoff.kernels.pair.newton import metric_inverse, whiten_gradient
 from standoff.kernels.state.arrays import (
     FEEDBACK_MATRIX,
     FEEDBACK_MOTION,
     FEEDBACK_PI,
     FEEDBACK_POWER,
+    PREDICT_NONE,
 )
 from standoff.kernels.state.options import feedback_number
 
@@ -69,11 +71,12 @@ def commanded_errors(options, jet_a, jet_b, psi, integral):
 
 
 @kernel
-def gain_now(options, jet_a, jet_b, b):
+def gain_now(options, jet_a, jet_b, b, work):
     """K; from the bodies' motion where it is to be computed online.
 
     Without feedforward the errors settle at b/K: in the metric D of the tangents, where both are
-    lengths, K = |b| / error keeps them at `error`.
+    lengths, K = |b| / error keeps them at `error`. A gain that is cut, so that it does not, counts
+    as saturated.
     """
     if options.feedback != FEEDBACK_MOTION:
         return options.gain
@@ -83,4 +86,6 @@ def gain_now(options, jet_a, jet_b, b):
     ib = metric_inverse(jet_b[1], jet_b[2])
     b = whiten_gradient(ia, ib, b)
     size = sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2] + b[3] * b[3])
-    return min(max(size / error, least), most)
+    needed = size / error
+    work.counts[SATURATIONS] += needed > most and options.predictor == PREDICT_NONE
+    return min(max(needed, least), most)

@@ -133,7 +133,7 @@ def rates_at(pair, motion, place, options, integrated, h, work):
     evaluated = options.realisation != INTEGRATED
     psi = projection_errors(jet_a, jet_b) if evaluated else integrated.errors
     b = feedforward(jet_a, jet_b, STILL, of_origin(motion))
-    gain = gain_now(options, jet_a, jet_b, b)
+    gain = gain_now(options, jet_a, jet_b, b, work)
     # what the law leaves out still moves the errors
     fed = gradient(b) if options.predictor != PREDICT_NONE else NO_RATES
     g = gradient(commanded_errors(options, jet_a, jet_b, psi, integrated.integral))

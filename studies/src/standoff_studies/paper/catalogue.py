@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 
 from standoff.checks.names import nearest
+from standoff.errors import GainWarning
 from standoff_studies.paper.figure import Artwork, Entry
 
 
@@ -41,6 +43,7 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("arrivals", "Which starts arrive", "Convergence", "convergence", "as_committed"),
     _entry("voronoi", "Voronoi regions", "Voronoi regions", "voronoi_figure", "regions"),
     _entry("gains", "Gains: decay and lag", "Control theory", "control", "decay_and_lag"),
+    _entry("lower", "The lower limit of K", "Control theory", "control", "lower_limit"),
     _entry("stability", "Stability", "Control theory", "control", "stability"),
     _entry("feedback", "Four feedbacks", "Control theory", "control", "four_feedbacks"),
     _entry("basin", "Basins of attraction", "Control theory", "control", "attraction"),
@@ -72,7 +75,10 @@ class UnknownFigure(ValueError):
 
 def make(entry: Entry) -> Artwork:
     """Make a figure: import its module and call its function."""
-    artwork = getattr(import_module(entry.module), entry.function)()
+    with warnings.catch_warnings():
+        # some figures measure what becomes of errors at such gains
+        warnings.simplefilter("ignore", GainWarning)
+        artwork = getattr(import_module(entry.module), entry.function)()
     if not isinstance(artwork, Artwork):
         raise TypeError(f"{entry.module}.{entry.function}() gave no Artwork but {artwork!r}.")
     return artwork

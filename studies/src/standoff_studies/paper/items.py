@@ -48,7 +48,7 @@ ITEMS: tuple[Item, ...] = (
          "done", "with a simulated device",
          "[in the loop](in-the-loop.md)", ("5",)),
     Item("other feedbacks, lower gain online", "done", "",
-         "[control](control.md), [variants](variants.md)", ("feedback", "variants")),
+         "[control](control.md), [variants](variants.md)", ("lower", "feedback", "variants")),
     Item("saturation by zeroing", "done", "Figs. 8–20 use it",
          "[variants](variants.md)", ("variants",)),
     Item("Eqs. (15)–(17): modes, guards, resets", "done", "as printed, `so.PaperLaw.as_printed`",

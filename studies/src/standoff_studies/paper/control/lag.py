@@ -23,6 +23,8 @@ LAG = 1e-3
 """Error that the gain should keep, as a fraction of the smaller body's size."""
 LEAST_STEP, MOST_STEP = 0.02, 1.0
 """Range of K h: below it a case does not have time to settle, above it the error may overshoot."""
+FINE = "euler", 1e-9
+"""A step so short that every gain is stable: those beyond `MOST_STEP` are replaced by it here."""
 
 
 class Case(NamedTuple):
@@ -107,7 +109,7 @@ def measured_lag(case: Case) -> Lag | None:
     speed, spin = float(np.linalg.norm(v)), float(np.linalg.norm(omega))
     wanted = LAG * min(body.size or 1.0 for body in (case.a, case.b))
     among = float(truth.distance.min()), float(truth.distance.max())
-    least = so.min_gain(case.a, case.b, wanted, speed, spin, distance=among)
+    least = so.min_gain(case.a, case.b, wanted, speed, spin, distance=among, step=FINE)
     gain = float(np.clip(least, LEAST_STEP / DT, MOST_STEP / DT))
     bound = wanted * least / gain
     if not 0.0 < bound <= 10.0 * wanted:
