@@ -243,7 +243,8 @@ def _of_rings(rings: dict[tuple[str, str], Arrived]) -> tuple[Statement, ...]:
             "with the positive part of each principal curvature "
             f"{best.at_least + best.at_other} of {best.tried} starts come to a local minimum, by "
             f"the gradient {gradient.at_least + gradient.at_other}; from starts nearer than the "
-            f"second minimum {best.below_arrived} of {best.below} to the least",
+            f"second minimum {best.below_arrived} of {best.below} to the least; the distance rose "
+            f"in {best.rises} frames of all these runs, by the gradient in {gradient.rises}",
             best.at_least + best.at_other == best.tried and best.below_arrived == best.below,
             by=by,
         ),

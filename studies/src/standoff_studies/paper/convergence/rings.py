@@ -119,22 +119,20 @@ def solid(radii: tuple[float, float]) -> Solid:
 
 
 @cache
-def ring_pairs() -> tuple[RingPair, ...]:
-    """The pairs: poses are drawn until the judge proves that they are apart."""
-    rng, found = np.random.default_rng(SEED), []
-    for kind, (a, b) in KINDS.items():
-        kept = 0
-        while kept < POSES:
-            turn, way = rng.normal(size=(2, 3))
-            if kind == "linked rings":
-                pose = Pose.exp(np.array([0.5 * np.pi, 0.0, 0.0]) + 0.3 * turn, 0.2 * way)
-                pose = Pose(pose.rotation, pose.translation + np.array([1.0, 0.0, 0.0]))
-            else:
-                pose = Pose.exp(turn, AWAY[kind] * way / np.linalg.norm(way))
-            minima = _judged(a, b, pose)
-            if minima and minima[0] > LEAST_GAP:
-                found.append(RingPair(kind, np.array([*a, *b]), pose, minima))
-                kept += 1
+def ring_pairs(kind: str) -> tuple[RingPair, ...]:
+    """Pairs of a kind: poses are drawn until the judge proves that they are apart."""
+    rng, found = np.random.default_rng([SEED, list(KINDS).index(kind)]), []
+    a, b = KINDS[kind]
+    while len(found) < POSES:
+        turn, way = rng.normal(size=(2, 3))
+        if kind == "linked rings":
+            pose = Pose.exp(np.array([0.5 * np.pi, 0.0, 0.0]) + 0.3 * turn, 0.2 * way)
+            pose = Pose(pose.rotation, pose.translation + np.array([1.0, 0.0, 0.0]))
+        else:
+            pose = Pose.exp(turn, AWAY[kind] * way / np.linalg.norm(way))
+        minima = _judged(a, b, pose)
+        if minima and minima[0] > LEAST_GAP:
+            found.append(RingPair(kind, np.array([*a, *b]), pose, minima))
     return tuple(found)
 
 
@@ -173,8 +171,7 @@ def all_arrivals() -> dict[tuple[str, str], Arrived]:
     """By the kind of pair and the law, over its poses."""
     found = {}
     for kind in KINDS:
-        own = [pair for pair in ring_pairs() if pair.kind == kind]
         for name, law in RING_LAWS.items():
-            rows = np.array([arrivals(pair, law) for pair in own])
+            rows = np.array([arrivals(pair, law) for pair in ring_pairs(kind)])
             found[kind, name] = Arrived(*rows.sum(axis=0).tolist())
     return found
