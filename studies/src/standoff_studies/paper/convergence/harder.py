@@ -170,7 +170,7 @@ def _rings(rings: dict[tuple[str, str], Arrived]) -> dict[str, Any]:
         "at the least distance": [f"{x.at_least} of {x.tried}" for x in rings.values()],
         "at another minimum": [str(x.at_other) for x in rings.values()],
         "elsewhere": [str(x.tried - x.at_least - x.at_other) for x in rings.values()],
-        "nearer than a second minimum, arrived": [
+        "more starts, nearer than the second minimum: at the least": [
             f"{x.below_arrived} of {x.below}" for x in rings.values()
         ],
     }

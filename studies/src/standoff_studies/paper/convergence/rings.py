@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
@@ -30,19 +31,22 @@ KINDS = {
     "ring and point": (FAT, POINT),
     "two rings": (THIN, THIN),
     "linked rings": (THIN, THIN),
-    "fat ring and ring": (FAT, THIN),
+    "fat and thin": (FAT, THIN),
 }
 """The radii of both bodies by the kind of pair."""
 
-POSES, STARTS = 3, 100
+POSES, STARTS = 2, 150
 """Of each kind, and at each of them."""
+
+NEARER, DRAWS = 40, 20_000
+"""More starts that are nearer than the second minimum, and of how many draws."""
 
 SEED = 5
 
 LEAST_GAP = 0.1
 """Least distance of a drawn pair [length]."""
 
-AWAY = {"ring and point": 0.6, "two rings": 1.8, "fat ring and ring": 1.9}
+AWAY = {"ring and point": 0.6, "two rings": 1.8, "fat and thin": 1.9}
 """Distance of the second body's centre [length]; a linked ring's is on the first one's circle."""
 
 FAR = 10.0
@@ -73,7 +77,8 @@ RING_LAWS = {
 """The laws by name. The gradient is that of the metric: of E, by lengths on the surfaces."""
 
 
-class RingPair(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class RingPair:
     """Two rings, or a ring and a point, and the minima that the judge tells, the least first."""
 
     kind: str
@@ -93,11 +98,11 @@ class Arrived(NamedTuple):
     Attributes
     ----------
     tried, at_least, at_other : int
-        Starts, those at the least distance, and at another local minimum.
+        Starts drawn evenly, those at the least distance, and at another local minimum.
     unknown : int
-        Local minima that the judge does not tell.
+        Ends with H definite at no minimum that the judge tells.
     below, below_arrived : int
-        Starts nearer than the second minimum, and how many of them came to the least.
+        More starts, nearer than the second minimum, and how many of them came to the least.
     rises : int
         Frames in which the distance rose.
     """
@@ -120,7 +125,8 @@ def solid(radii: tuple[float, float]) -> Solid:
 
 @cache
 def ring_pairs(kind: str) -> tuple[RingPair, ...]:
-    """Pairs of a kind: poses are drawn until the judge proves that they are apart."""
+    """Pairs of a kind: poses are drawn until the judge proves that they are apart, and of two rings
+    until it tells several minima."""
     rng, found = np.random.default_rng([SEED, list(KINDS).index(kind)]), []
     a, b = KINDS[kind]
     while len(found) < POSES:
@@ -130,9 +136,10 @@ def ring_pairs(kind: str) -> tuple[RingPair, ...]:
             pose = Pose(pose.rotation, pose.translation + np.array([1.0, 0.0, 0.0]))
         else:
             pose = Pose.exp(turn, AWAY[kind] * way / np.linalg.norm(way))
-        minima = _judged(a, b, pose)
-        if minima and minima[0] > LEAST_GAP:
-            found.append(RingPair(kind, np.array([*a, *b]), pose, minima))
+        one = RingPair(kind, np.array([*a, *b]), pose, _judged(a, b, pose))
+        apart = bool(one.minima) and one.minima[0] > LEAST_GAP
+        if apart and (b == POINT or one.second < FAR):
+            found.append(one)
     return tuple(found)
 
 
@@ -147,23 +154,38 @@ def _judged(a: tuple[float, float], b: tuple[float, float], pose: Pose) -> tuple
 
 def arrivals(pair: RingPair, law: RingLaw) -> Arrived:
     """Follow a law from starts drawn evenly in the parameters."""
-    rng, pose = np.random.default_rng(SEED), flat_pose(pair.pose)
-    counts = np.zeros(6, dtype=int)
+    pose, counts = flat_pose(pair.pose), np.zeros(6, dtype=int)
     distances = np.empty(FRAMES + 1)
     g, form, lengths = np.empty(4), np.empty((4, 4)), np.empty(4)
-    for q in rng.uniform(0.0, 2.0 * np.pi, (STARTS, 4)):
+    for k, q in enumerate(np.vstack([*_starts(pair)])):
         took = followed(pair.radii, pose, q, *law, distances)
         end = ring_system(pair.radii, pose, q, PRINTED, g, form, lengths)
         is_minimum = took < FRAMES and bool(np.linalg.eigvalsh(form)[0] > 0.0)
         least = abs(end - pair.minima[0]) < ARRIVED
         known = min(abs(end - x) for x in pair.minima) < ARRIVED
-        below = distances[0] < pair.second
+        spread = k < STARTS
         counts += (
-            *(is_minimum and least, is_minimum and not least, is_minimum and not known),
-            *(below, below and is_minimum and least),
+            *(spread and least, spread and known and not least, is_minimum and not known),
+            *(not spread, not spread and least),
             int((np.diff(distances[: took + 1]) > ROUNDOFF).sum()),
         )
     return Arrived(STARTS, *counts.tolist())
+
+
+@cache
+def _starts(pair: RingPair) -> tuple[Array, Array]:
+    """Starts drawn evenly in the parameters, and those of more draws that are nearer than the
+    second minimum."""
+    rng, pose = np.random.default_rng(SEED), flat_pose(pair.pose)
+    spread, nearer = rng.uniform(0.0, 2.0 * np.pi, (STARTS, 4)), []
+    g, form, lengths = np.empty(4), np.empty((4, 4)), np.empty(4)
+    for q in rng.uniform(0.0, 2.0 * np.pi, (DRAWS, 4)):
+        if (
+            len(nearer) < NEARER
+            and ring_system(pair.radii, pose, q, PRINTED, g, form, lengths) < pair.second
+        ):
+            nearer.append(q)
+    return spread, np.array(nearer).reshape(-1, 4)
 
 
 @cache
