@@ -141,7 +141,7 @@ def from_ball(bodies: str) -> Basin:
 def gains(bodies: str) -> Array:
     """The least gain at which each function falls in half the ball while B moves [1/s]."""
     drawn = in_ball(errors(bodies), HALF * ball(bodies).length, TRIED)
-    return least_gains(errors(bodies), drawn, Twist(*map(np.array, MOVING)))
+    return least_gains(errors(bodies), drawn, Twist(np.array(MOVING[0]), np.array(MOVING[1])))
 
 
 @cache

@@ -244,7 +244,7 @@ def _values(made: Errors, pose_b: Pose) -> Callable[[Array], Array]:
 
 def spread(made: Errors, count: int) -> Array:
     """Points of the optimum's features, drawn evenly in their parameters: (count, n)."""
-    rng, system, found = np.random.default_rng(SEED), made.system(), []
+    rng, system, found = np.random.default_rng(SEED), made.system(), list[Array]()
     n = len(made.optimum)
     while len(found) < count:
         q = rng.uniform(-REACH, REACH, n)

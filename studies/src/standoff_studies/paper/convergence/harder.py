@@ -262,7 +262,8 @@ def _of_rings(rings: dict[tuple[str, str], Arrived]) -> tuple[Statement, ...]:
 
 def _draw(cells: tuple[Cell, ...], rings: dict[tuple[str, str], Arrived]) -> Figure:
     figure = style.new_figure(style.WIDTH, 7.6)
-    above, below = figure.subfigures(2, 1, height_ratios=(1.0, 1.35))
+    halves: Any = figure.subfigures(2, 1, height_ratios=(1.0, 1.35))
+    above, below = halves
     turning, sharp = above.subplots(1, 2, sharey=True)
     for law, (colour, marker) in LOOKS.items():
         for axes, line in zip((turning, sharp), _lines(cells, law), strict=True):

@@ -127,7 +127,7 @@ def solid(radii: tuple[float, float]) -> Solid:
 def ring_pairs(kind: str) -> tuple[RingPair, ...]:
     """Pairs of a kind: poses are drawn until the judge proves that they are apart, and of two rings
     until it tells several minima."""
-    rng, found = np.random.default_rng([SEED, list(KINDS).index(kind)]), []
+    rng, found = np.random.default_rng([SEED, list(KINDS).index(kind)]), list[RingPair]()
     a, b = KINDS[kind]
     while len(found) < POSES:
         turn, way = rng.normal(size=(2, 3))
@@ -177,7 +177,7 @@ def _starts(pair: RingPair) -> tuple[Array, Array]:
     """Starts drawn evenly in the parameters, and those of more draws that are nearer than the
     second minimum."""
     rng, pose = np.random.default_rng(SEED), flat_pose(pair.pose)
-    spread, nearer = rng.uniform(0.0, 2.0 * np.pi, (STARTS, 4)), []
+    spread, nearer = rng.uniform(0.0, 2.0 * np.pi, (STARTS, 4)), list[Array]()
     g, form, lengths = np.empty(4), np.empty((4, 4)), np.empty(4)
     for q in rng.uniform(0.0, 2.0 * np.pi, (DRAWS, 4)):
         if (
