@@ -107,9 +107,8 @@ def harder() -> Artwork:
             "Above two diagrams with one line at 1, the covariant law with held boundaries, and "
             "two between 0.1 and 0.5, the printed law and Newton's method, which do not depend "
             "much on the speed or on the ratio. Below four groups of bars: of rings the gradient "
-            "and the covariant law by principal directions always come to a local minimum, of two "
-            "or more minima to the least in two thirds of the starts; the printed law in some per "
-            "cent."
+            "and the covariant law by principal directions come to a local minimum, of two or more "
+            "to the least in three fifths of the starts; the printed law in some per cent."
         ),
         draw=lambda: _draw(cells, rings),
         tables={
@@ -251,9 +250,9 @@ def _of_rings(rings: dict[tuple[str, str], Arrived]) -> tuple[Statement, ...]:
         Statement(
             SECTION,
             "-",
-            f"of {sum(x.at_least + x.at_other for x in rows.values())} ends with H definite, "
-            f"{sum(x.unknown for x in rows.values())} are at no minimum that a cold query of "
-            "solids tells",
+            f"{sum(x.at_least + x.at_other for x in rows.values())} of these starts come to a "
+            "minimum that a cold query of solids tells; with H definite "
+            f"{sum(x.unknown for x in rows.values())} end at another place",
             not any(x.unknown for x in rows.values()),
             by=by,
         ),
