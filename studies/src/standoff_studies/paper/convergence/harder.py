@@ -316,3 +316,4 @@ def _draw_rings(axes: Axes, kind: str, rings: dict[tuple[str, str], Arrived]) ->
     axes.set_title(kind)
     axes.set(xlabel="part [–]", xlim=(0.0, 1.0), xticks=(0.0, 0.5, 1.0))
     axes.grid(visible=False, axis="y")
+    axes.set_axisbelow(True)
