@@ -129,7 +129,7 @@ def lyapunov_level(
     best = distance(a, b, pose_a, pose_b)
     if not best.certified or best.distance <= 0.0:
         raise StandoffError(f"The pair has no certified minimum: {best!r}.")
-    system = System(a, b, pose_a, pose_b)
+    system = RestSystem(a, b, pose_a, pose_b)
     q0 = system.place(best.place_a, best.place_b)
     if not len(q0):
         raise StandoffError("Both witness points are vertices: there are no parameters to err.")
@@ -215,7 +215,7 @@ def _least(
     return min([best, *sought], key=value)
 
 
-def _outwards(system: System, q0: Array, L: Array, direction: Array, rest: float) -> Curve:
+def _outwards(system: RestSystem, q0: Array, L: Array, direction: Array, rest: float) -> Curve:
     """Follow a direction e from the optimum until H is singular or a feature ends.
 
     By length: dq/dt ~ adj(H) L e and ds/dt ~ det H go smoothly through a singular H.
@@ -254,7 +254,7 @@ def _outwards(system: System, q0: Array, L: Array, direction: Array, rest: float
     return Curve(at[:, :n], at[:, n], energies, bool(len(ended.t_events[0])), direction)
 
 
-class System:
+class RestSystem:
     """g, H, D and E of one mode of a pair at rest, also a little outside its features."""
 
     def __init__(self, a: Body, b: Body, pose_a: PoseLike, pose_b: PoseLike) -> None:

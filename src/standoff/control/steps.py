@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.checks.real_numbers import shown
 from standoff.control.basin import AtRest
-from standoff.control.lyapunov import LyapunovLevels, System
+from standoff.control.lyapunov import LyapunovLevels, RestSystem
 from standoff.control.tolerances import FOUND_MINIMUM
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.geometry.validation import Array
@@ -69,7 +69,7 @@ def step_growth(
     for given, kind in ((tracker, Tracker), (levels, LyapunovLevels)):
         if not isinstance(given, kind):
             raise StandoffTypeError(f"{shown(given)} is not a {kind.__name__}.")
-    system = System(tracker.a, tracker.b, pose_a, pose_b)
+    system = RestSystem(tracker.a, tracker.b, pose_a, pose_b)
     best = distance(tracker.a, tracker.b, pose_a, pose_b)
     q0 = system.place(best.place_a, best.place_b)
     n, i = len(q0), int((system.kept < 2).sum())

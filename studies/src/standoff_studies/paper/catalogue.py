@@ -41,6 +41,7 @@ CATALOGUE: tuple[Entry, ...] = (
     _entry("19", "Five snapshots", "Simulation E", "simulation_e", "figure_19"),
     _entry("20", "Parameters in time", "Simulation E", "simulation_e", "figure_20"),
     _entry("arrivals", "Which starts arrive", "Convergence", "convergence", "as_committed"),
+    _entry("harder", "Faster, sharper, bent inwards", "Convergence", "convergence", "harder"),
     _entry("voronoi", "Voronoi regions", "Voronoi regions", "voronoi_figure", "regions"),
     _entry("gains", "Gains: decay and lag", "Control theory", "control", "decay_and_lag"),
     _entry("lower", "The lower limit of K", "Control theory", "control", "lower_limit"),

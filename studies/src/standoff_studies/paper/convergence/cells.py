@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -18,7 +18,14 @@ import numpy as np
 
 from standoff.tracking.laws import PaperLaw
 from standoff.whole_files import write_whole
-from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, GRIDS, LENSES, pair
+from standoff_studies.paper.convergence.pairs import (
+    DRAWN_PAIRS,
+    GRIDS,
+    LENSES,
+    SHARP,
+    TURNING,
+    pair,
+)
 from standoff_studies.paper.convergence.starts import outcome, trial
 
 GAINS = (25.0, 100.0, 400.0, 1000.0)
@@ -67,12 +74,16 @@ LAWS = {
     ),
     "ranked": LawOf("rank rule", 200, {**PRINTED, "solve": "ranked"}),
     "own": LawOf("multipliers, rank rule", 1000, {}),
+    "newton": LawOf("Newton", 200, {**PRINTED, "integrator": "euler", "solve": "plain"}),
 }
 """The laws by key, with the starts of a cell."""
 
 FEWER = {("printed", "drawn"): 100, ("covariant-hold", "lens"): 300}
 """Starts of laws that have fewer on some pairs: on each drawn pair, and on the bodies of D, E and
 C, where every start arrives without holding boundaries."""
+
+HARDER_STARTS = 100
+"""Starts of each cell with a harder pair."""
 
 Options = tuple[str, str, str, float]
 """The key of a cell: the pair, the motion, the law, the gain."""
@@ -152,6 +163,8 @@ def starts_of(options: Options) -> int:
     name, _, law, _ = options
     if name in GRIDS:
         return len(pair(name).grid)
+    if name.startswith(("turning", "sharp")):
+        return HARDER_STARTS
     kind = "drawn" if name in DRAWN_PAIRS else "vaults" if name == "A vaults" else "lens"
     return FEWER.get((law, kind), LAWS[law].starts)
 
@@ -198,11 +211,29 @@ def every_cell() -> Iterator[Options]:
     yield from product(GRIDS, ("rest",), ("printed", "printed-left", "covariant"), GAINS[:1])
 
 
-def study(kept: Path, processes: int = 2, starts: int | None = None) -> None:
+HARDER_LAWS = {"printed": 100.0, "covariant-hold": 100.0, "newton": 1000.0}
+"""The laws of the harder cells, and their gains [1/s]: K h = 0.1, and 1 for Newton's method."""
+
+
+def harder_cells() -> Iterator[Options]:
+    """Yield the options of the cells with faster bodies and with sharper ones."""
+    turning = [("moving", name) for names in TURNING.values() for name in names]
+    still = [("rest", name) for name in next(iter(TURNING.values()))]
+    sharp = [("rest", name) for names in SHARP.values() for name in names]
+    for (motion, name), (law, gain) in product([*still, *turning, *sharp], HARDER_LAWS.items()):
+        yield name, motion, law, gain
+
+
+def study(
+    kept: Path,
+    processes: int = 2,
+    starts: int | None = None,
+    every: Callable[[], Iterable[Options]] = every_cell,
+) -> None:
     """Run all cells that are not in a file yet; the whole file is written again after each."""
     lines = kept.read_text("utf-8").splitlines() if kept.exists() else []
     have = {cell.options for cell, _ in read(lines)}
-    waiting = [options for options in every_cell() if options not in have]
+    waiting = [options for options in every() if options not in have]
     with ProcessPoolExecutor(processes) as pool:
         runs = [pool.submit(made, options, starts) for options in waiting]
         for run in as_completed(runs):
@@ -225,15 +256,18 @@ def read(lines: Iterable[str]) -> list[tuple[Cell, list[dict[str, Any]]]]:
     return [(Cell(**row["cell"]), row["traces"]) for row in rows]
 
 
-def committed() -> tuple[Cell, ...]:
-    """Return the cells as they were run when the summary was last written."""
-    text = files("standoff_studies.paper.convergence").joinpath(SUMMARY).read_text("utf-8")
+def committed(name: str = SUMMARY) -> tuple[Cell, ...]:
+    """Return the cells as they were run when a summary was last written."""
+    text = files("standoff_studies.paper.convergence").joinpath(name).read_text("utf-8")
     return tuple(Cell(**row) for row in json.loads(text)["cells"])
 
 
-def summary(run: Iterable[tuple[Cell, list[dict[str, Any]]]]) -> str:
-    """Return the text of a summary: one line per cell, in the order of `every_cell`."""
+def summary(
+    run: Iterable[tuple[Cell, list[dict[str, Any]]]],
+    every: Callable[[], Iterable[Options]] = every_cell,
+) -> str:
+    """Return the text of a summary: one line per cell, in the order of `every`."""
     found = {cell.options: cell for cell, _ in run}
-    ordered = [found[options] for options in every_cell() if options in found]
+    ordered = [found[options] for options in every() if options in found]
     rows = ",\n  ".join(json.dumps(asdict(cell)) for cell in ordered)
     return f'{{"seed": {SEED}, "cells": [\n  {rows}\n]}}\n'

@@ -37,6 +37,18 @@ SPEED, SPIN = 0.2, 0.3
 """Motion of a body for which none is given: along the gap's tangent plane [length/s], and about a
 random axis [rad/s]. In the longest run, 0.62 s, it moves by at most 0.4, less than the gap."""
 
+HARDER = 3
+"""Pairs of lenses at each speed, and at each ratio of curvatures."""
+
+RATES = (1.0, 3.0, 10.0, 30.0)
+"""Rates at which the second body of a pair turns about its own centre [rad/s]."""
+
+RATIOS = (1.0, 10.0, 100.0, 1000.0)
+"""Greatest curvature of the ellipsoid of which a lens's faces are, over its least."""
+
+CLEARANCE = 0.3
+"""Between the balls round both bodies of a turning pair [length]: they never meet."""
+
 OUTSIDE = 2.5
 """Time at which simulation B's spiral starts here: its point is outside then [s]."""
 
@@ -159,7 +171,37 @@ def _drawn(number: int) -> Pair:
 def set_apart(name: str, a: Body, b: Body, rng: np.random.Generator) -> Pair:
     """Draw a place of B beside A, both of patches with three faces, and its motion."""
     way, gap = rng.normal(size=3), float(rng.uniform(*GAPS))
-    path = _apart(a, b, _random_turn(rng), way, gap, rng)
+    return _of_lenses(name, a, b, _apart(a, b, _random_turn(rng), way, gap, rng))
+
+
+def _turning(number: int, rate: float) -> Pair:
+    """A drawn pair farther apart, B turning about its centre."""
+    rng = np.random.default_rng([SEED_OF_PAIRS, number])
+    a, b = (lens_of_patches().transformed(np.diag(rng.uniform(*STRETCHED, 3))) for _ in range(2))
+    way, axis = (x / np.linalg.norm(x) for x in rng.normal(size=(2, 3)))
+    reach = sum(np.linalg.norm(body.vertex_points, axis=1).max() for body in (a, b))
+    pose = Pose(_random_turn(rng), (reach + CLEARANCE) * way)
+    return _of_lenses(
+        f"turning pair {number}", a, b, ConstantTwist(pose, Twist(np.zeros(3), rate * axis))
+    )
+
+
+def _sharp(number: int, ratio: float) -> Pair:
+    """A drawn pair whose lenses are stretched until their curvatures have a ratio.
+
+    An ellipsoid's greatest curvature over its least is (a / c)³, of its longest and shortest axis.
+    """
+    rng = np.random.default_rng([SEED_OF_PAIRS, number])
+
+    def drawn() -> Body:
+        least = ratio ** (-1.0 / 3.0)
+        axes = rng.permutation([1.0, float(rng.uniform(least, 1.0)), least])
+        return lens_of_patches().transformed(np.diag(axes))
+
+    return set_apart(f"sharp pair {number}", drawn(), drawn(), rng)
+
+
+def _of_lenses(name: str, a: Body, b: Body, path: Path) -> Pair:
     return Pair(name, a, b, path, lambda rng: (on_a_face(3, rng), on_a_face(3, rng)))
 
 
@@ -206,6 +248,10 @@ def _planar(*, alone: bool) -> Pair:
     )
 
 
+TURNING = {rate: tuple(f"turning {k}, {rate:g}" for k in range(HARDER)) for rate in RATES}
+SHARP = {ratio: tuple(f"sharp {k}, {ratio:g}" for k in range(HARDER)) for ratio in RATIOS}
+"""Keys of the harder pairs, by rate and by ratio."""
+
 MADE: dict[str, Callable[[], Pair]] = {
     **{f"D {key}": partial(_lens_and_point, key) for key in PARAMETRISATIONS},
     **{f"E {key}": partial(_two_lenses, key) for key in PARAMETRISATIONS},
@@ -214,6 +260,12 @@ MADE: dict[str, Callable[[], Pair]] = {
     "B": partial(_planar, alone=True),
     "C": partial(_planar, alone=False),
     **{f"drawn {k}": partial(_drawn, k) for k in range(DRAWN)},
+    **{
+        name: partial(made, k, by)
+        for made, keys in ((_turning, TURNING), (_sharp, SHARP))
+        for by, names in keys.items()
+        for k, name in enumerate(names)
+    },
     **{f"D {key}, grid": partial(_grid, key) for key in PARAMETRISATIONS},
 }
 """How each pair is made, by its key."""
