@@ -47,8 +47,8 @@ def artwork_of(entry: Entry) -> Artwork:
         missing = missing_words(statement)
         if missing:
             raise ValueError(f'"{statement.stated}" does not say {missing}.')
-    for fault in faults(entry.key, artwork.statements):
-        raise ValueError(f"The row of promises.md on {fault}.")
+    for row, fault in faults(entry.key, artwork.statements):
+        raise ValueError(f"The row of promises.md on “{row.says}” is no longer true: {fault}.")
     return artwork
 
 

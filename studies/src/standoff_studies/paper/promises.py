@@ -66,9 +66,13 @@ class Shown(NamedTuple):
         sign = f"{self.verdict.sign} " if self.verdict else ""
         return f"{sign}{self.number or self.words}"
 
+    def is_of(self, statement: Statement) -> bool:
+        """Is it a part of this statement?"""
+        return self.words in statement.stated and self.number in statement.measured
+
     def fault(self, statements: Iterable[Statement]) -> str:
         """Return what of it is not so among the figure's statements; "" if all is."""
-        found = [s for s in statements if self.words in s.stated and self.number in s.measured]
+        found = [s for s in statements if self.is_of(s)]
         if len(found) != 1:
             return f'{len(found)} statements with "{self.words}", "{self.number}"'
         is_now = Verdict.of(found[0])
@@ -128,8 +132,8 @@ PROMISES: Mapping[str, tuple[Promise, ...]] = {
 """By the section of the paper."""
 
 
-def faults(key: str, statements: Iterable[Statement]) -> list[str]:
-    """Return what rows say of a figure that its statements do not.
+def faults(key: str, statements: Iterable[Statement]) -> list[tuple[Promise, str]]:
+    """Return rows that quote of a figure what its statements do not say, and what is wrong.
 
     Parameters
     ----------
@@ -138,9 +142,10 @@ def faults(key: str, statements: Iterable[Statement]) -> list[str]:
     statements : iterable of Statement
         All of its statements.
     """
+    made = tuple(statements)
     rows = [row for section in PROMISES.values() for row in section]
-    told = [(row, one.fault(statements)) for row in rows for one in row.shown if one.key == key]
-    return [f"“{row.says}”: {fault}" for row, fault in told if fault]
+    found = [(row, one.fault(made)) for row in rows for one in row.shown if one.key == key]
+    return [(row, fault) for row, fault in found if fault]
 
 
 def page_of(key: str) -> str:
@@ -173,7 +178,7 @@ def counted() -> dict[Kept, int]:
 
 
 def _said(row: Promise) -> str:
-    return f"“{row.says}”" + (f" ({row.where})" if row.where else "")
+    return f"“{row.says}”" + (f", {row.where}" if row.where else "")
 
 
 def _kept(row: Promise) -> str:
