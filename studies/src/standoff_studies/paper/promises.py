@@ -22,8 +22,10 @@ OF_A_PAGE = ".md"
 """How the key of a page ends, its path from the pages of the paper."""
 
 PAGES = {
+    "Beyond convex bodies": "nonconvex",
     "Control theory": "control",
     "Reference [28]": "normals",
+    "The field": "field",
     "variants": "variants",
     "cost": "verdict",
     "verdict": "verdict",
