@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
@@ -31,6 +32,7 @@ from standoff_studies.paper.simulation_c import regions as regions_c
 PAPER = "standoff_studies.paper"
 FOOT, TRACKER, ROOTS = patches._answer, so.Tracker, roots.sampled_roots
 ADVANCED, STEP = normals_study.advanced, update_cost.law_step
+FUNCTIONS = levels.functions
 B, C = regions_b.run, regions_c.regions
 
 
@@ -117,9 +119,11 @@ def half_arrived() -> tuple[Cell, ...]:
     )
 
 
-def of_another_feature(*pair: Any) -> so.Proximity:
+def of_another_feature(*pair: Any) -> SimpleNamespace:
     answer = so.distance(*pair)
-    return answer._replace(feature_a=answer.feature_b)
+    return SimpleNamespace(
+        certified=answer.certified, distance=answer.distance, feature_a=answer.feature_b
+    )
 
 
 def without_a_line() -> Any:
@@ -136,6 +140,11 @@ def turned_inwards() -> Any:
         replace(one, external=tuple(x._replace(directions=-x.directions) for x in one.external))
         for one in C()
     )
+
+
+def of_other_signs(*at: Any) -> Any:
+    v, energy, least = FUNCTIONS(*at)
+    return v, -energy, -least
 
 
 def by_euler(integrator: str, *rest: Any) -> Any:
@@ -179,7 +188,7 @@ CHANGES = (
     change("stability", roots, "sampled_roots", by_euler),
     change("feedback", so, "Tracker", HALVED),
     change("basin", so, "Tracker", followed_by(definite)),
-    change("lyapunov", levels, "PART", 3.0, levels, "CLEAR", 3.0),
+    change("lyapunov", levels, "FRAMES", 20, levels, "functions", of_other_signs),
     change("normals", normals_study, "advanced", half_newton),
     change("variants", so, "Tracker", followed_by(covariant_and_loose)),
     change("cost", update_cost, "law_step", half_a_step),
