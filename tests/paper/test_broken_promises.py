@@ -63,8 +63,12 @@ def followed_by(change: Callable[[Any, float], Any]) -> Callable[..., so.Tracker
 def gain_halved(law: Any, dt: float) -> Any:
     if not isinstance(law, so.PaperLaw):
         return law
-    if isinstance(law.feedback, so.feedback.Linear | so.feedback.PI):
-        return replace(law, feedback=replace(law.feedback, gain=0.5 * law.feedback.gain))
+    ruled = law.feedback
+    if isinstance(ruled, so.feedback.Linear):
+        return replace(law, feedback=replace(ruled, gain=0.5 * ruled.gain))
+    if isinstance(ruled, so.feedback.PI):
+        slower = so.feedback.PI(0.5 * ruled.gain, 0.25 * ruled.integral)  # of the same damping
+        return replace(law, feedback=slower)
     return law if law.feedback else replace(law, gain=0.5 * (law.gain or 1.0 / dt))
 
 
