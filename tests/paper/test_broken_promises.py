@@ -83,8 +83,8 @@ def realised_otherwise(law: Any, dt: float) -> Any:
     )
 
 
-def definite(law: Any, dt: float) -> Any:
-    return replace(law, solve="ranked")
+def long_steps(law: Any, dt: float) -> Any:
+    return replace(law, gain=1.5 / dt) if isinstance(law, so.PaperLaw) else law
 
 
 def otherwise_predicted(law: Any, dt: float) -> Any:
@@ -161,8 +161,8 @@ def half_a_step(*given: Any) -> Any:
     return q + 0.5 * (STEP(*given) - q)
 
 
-def half_newton(at: Any, points: Any, steps: Any) -> Any:
-    return ADVANCED(at, points, 0.5 * steps)
+def hardly_moved(at: Any, points: Any, steps: Any) -> Any:
+    return ADVANCED(at, points, 0.02 * steps)
 
 
 class Change(NamedTuple):
@@ -191,9 +191,9 @@ CHANGES = (
     change("gains", so, "Tracker", HALVED, gains, "stability_limit", lambda name: 2.0),
     change("stability", roots, "sampled_roots", by_euler),
     change("feedback", so, "Tracker", HALVED),
-    change("basin", so, "Tracker", followed_by(definite)),
+    change("basin", so, "Tracker", followed_by(long_steps)),
     change("lyapunov", levels, "FRAMES", 20, levels, "functions", of_other_signs),
-    change("normals", normals_study, "advanced", half_newton),
+    change("normals", normals_study, "advanced", hardly_moved),
     change("variants", so, "Tracker", followed_by(covariant_and_loose)),
     change("cost", update_cost, "law_step", half_a_step),
     change("verdict", so, "Tracker", followed_by(otherwise_predicted)),
