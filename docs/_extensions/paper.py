@@ -3,8 +3,8 @@
 ``paper-figure`` shows a figure with its caption, ``paper-statements`` sets what the paper states
 beside what was measured, ``paper-tables`` prints its tables. Each takes the figure's key. A figure
 is made once a build, by the process that reads its page: the figures of a chapter stand on one page
-and share its run. A key that no figure has, a figure that fails, and a statement that does not name
-its law is a warning, so it fails the build.
+and share its run. A key that no figure has, a figure that fails, a statement that does not name its
+law, and a row of promises.md that is no longer true is a warning, so it fails the build.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from sphinx.util.docutils import SphinxDirective
 import standoff_studies.paper
 from standoff_studies.paper.catalogue import UnknownFigure, chosen, make
 from standoff_studies.paper.figure import Artwork, Entry, Statement, missing_words, shown_tables
+from standoff_studies.paper.promises import faults
 from standoff_studies.paper.typesetting import pieces, stop
 from standoff_studies.paper.verdicts import Verdict
 from standoff_studies.paper.writers import picture_bytes, stem
@@ -40,12 +41,14 @@ SOURCES = sorted(Path(standoff_studies.paper.__file__).parent.glob("**/*.py"))
 
 @cache
 def artwork_of(entry: Entry) -> Artwork:
-    """A figure, made once a build; each of its statements says what it has to."""
+    """A figure, made once a build; its statements say what they have to, and what rows quote."""
     artwork = make(entry)
     for statement in artwork.statements:
         missing = missing_words(statement)
         if missing:
             raise ValueError(f'"{statement.stated}" does not say {missing}.')
+    for row, fault in faults(entry.key, artwork.statements):
+        raise ValueError(f"The row of promises.md on “{row.says}” is no longer true: {fault}.")
     return artwork
 
 

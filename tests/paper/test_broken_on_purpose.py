@@ -13,6 +13,7 @@ from standoff_studies.paper import pair_simulation
 from standoff_studies.paper.broken_on_purpose import BREAKS, FIGURES, Break, Noticed, noticed
 from standoff_studies.paper.broken_on_purpose.matrix import markdown, sound
 from standoff_studies.paper.figure import Statement, missing_words
+from standoff_studies.paper.promises import PROMISES, faults
 from standoff_studies.paper.simulation_c import regions as regions_c
 from standoff_studies.paper.simulation_c import run as c
 from standoff_studies.paper.simulation_d import runs as d
@@ -42,6 +43,14 @@ LONGEST = ("gain x 1.2", "no feedforward", "no guards", "exact reset", "restarts
 """Breaks whose figures take longest, three minutes of one core together: for `make soak` too."""
 
 
+def resting_on(figure: str, words: str) -> set[str]:
+    """Sentences of the promises whose row quotes a statement with these words."""
+    stated = [s for s in sound(figure) if words in s.stated]
+    rows = [row for section in PROMISES.values() for row in section]
+    quoted = [(row.says, one) for row in rows for one in row.shown if one.key == figure]
+    return {says for says, one in quoted for s in stated if one.is_of(s)}
+
+
 def check_that_it_is_noticed(one: Break, figures: Iterable[str]) -> None:
     """Each figure that claims what is broken says so in that statement, and none dies of it."""
     found = {row.key: row for row in noticed(one, sorted(figures, key=int), trials=False)}
@@ -49,6 +58,7 @@ def check_that_it_is_noticed(one: Break, figures: Iterable[str]) -> None:
     for figure, words in one.claims:
         if figure in found:
             assert sum(words in stated for stated in found[figure].failed) == 1, (figure, words)
+            assert resting_on(figure, words) <= {*found[figure].rows}
     # the law on record is another one, but for twists that it was told wrong
     assert [row.key for row in found.values() if row.words != (not one.backwards)] == []
 
@@ -125,6 +135,13 @@ def test_a_normal_of_the_wrong_sign_is_told(monkeypatch: pytest.MonkeyPatch) -> 
 def test_every_statement_names_its_law(key: str) -> None:
     """`make docs` asks the same of all that "standoff paper all" makes."""
     assert [(one.stated, missing_words(one)) for one in sound(key) if missing_words(one)] == []
+
+
+@pytest.mark.parametrize(
+    "key", [pytest.param(k, marks=[pytest.mark.soak] if k in ("7", "17") else []) for k in FIGURES]
+)
+def test_the_promises_quote_what_was_measured(key: str) -> None:
+    assert faults(key, sound(key)) == []
 
 
 def test_what_a_statement_does_not_say_is_noticed() -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.stats import binomtest
@@ -14,9 +12,7 @@ from standoff_studies.paper.convergence import as_committed, cells
 from standoff_studies.paper.convergence.lenses import PARAMETRISATIONS, lens
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, LENSES, pair
 from standoff_studies.paper.convergence.starts import CAUSES, STEP, frames_of, outcome, trial
-from standoff_studies.paper.items import ITEMS, markdown
 
-INDEX = Path(__file__).parents[2] / "docs" / "paper" / "index.md"
 STRETCHED = np.diag([0.8, 0.6, 0.7])
 
 
@@ -149,14 +145,3 @@ def test_the_study_is_made_only_where_it_is_asked_for() -> None:
     assert "arrivals" in keys
     assert "convergence" not in keys
     assert [entry.key for entry in catalogue.chosen(["convergence"])] == ["convergence"]
-
-
-def test_the_pages_list_the_items_that_the_report_lists() -> None:
-    assert markdown() in INDEX.read_text("utf-8")
-    known = {entry.key for entry in catalogue.CATALOGUE}
-    assert {item.state for item in ITEMS} == {"done", "partial"}
-    for item in ITEMS:
-        assert set(item.figures) <= known
-    # every figure of the paper's numbers is listed
-    listed = {key for item in ITEMS for key in item.figures}
-    assert {key for key in known if key.isdecimal()} <= listed

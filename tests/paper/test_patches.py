@@ -61,7 +61,7 @@ def test_both_witness_points_lie_inside_the_curved_faces() -> None:
 
 def test_the_figures_say_so() -> None:
     first, second = tangents_patch(), witness_pair()
-    assert [Verdict.of(s) for s in first.statements] == [Verdict.OWN, Verdict.OWN]
+    assert [Verdict.of(s) for s in first.statements] == [Verdict.HOLDS, Verdict.OWN]
     assert [Verdict.of(s) for s in second.statements] == [Verdict.HOLDS, Verdict.OWN]
     assert list(second.tables["tangents"]["tangent"]) == ["f_u", "f_v", "h_r", "h_s"]
     assert len(first.tables["isoparametric"]["u"]) == 2 * 9 * 33

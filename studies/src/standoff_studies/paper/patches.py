@@ -42,6 +42,9 @@ ARROW = 0.35
 SEEN_ABOVE, SEEN_ACROSS = (-62.0, 32.0), (-50.0, 30.0)
 """Azimuth and elevation of the two views [degrees]."""
 
+DIFFERENCES = 1e-9
+"""Error of a central difference at steps of 1e-5: h² of the third derivatives, above the rounding
+of the points over h [length]."""
 ROUNDOFF = 1e-12
 """Projections on unit vectors below this count as zero: 1e4 roundings."""
 
@@ -172,8 +175,11 @@ def _quotients(u: float, v: float) -> Statement:
     across = (face.jet(u + h, v)[0] - face.jet(u - h, v)[0]) / (2 * h)
     along = (face.jet(u, v + h)[0] - face.jet(u, v - h)[0]) / (2 * h)
     off = max(float(np.linalg.norm(f_u - across)), float(np.linalg.norm(f_v - along)))
-    return own_statement(
-        "Fig. 1", f"f_u and f_v are difference quotients of f to {off:.0e} [length]"
+    return Statement(
+        "Fig. 1",
+        "f_u and f_v are the first partial derivatives of the patch",
+        f"they are difference quotients of f to {off:.0e} [length]",
+        off < DIFFERENCES,
     )
 
 

@@ -12,8 +12,8 @@ from markupsafe import Markup, escape
 
 from standoff import __version__
 from standoff_studies.paper.figure import Statement
-from standoff_studies.paper.items import ITEMS
 from standoff_studies.paper.making import Made
+from standoff_studies.paper.promises import PROMISES
 from standoff_studies.paper.typesetting import pieces, stop
 from standoff_studies.paper.verdicts import Verdict, counted
 from standoff_studies.paper.writers import ANIMATION, PICTURES
@@ -88,7 +88,7 @@ def report_html(made: Sequence[Made], of: int) -> str:
         counts=counted(statements),
         Verdict=Verdict,
         stop=stop,
-        items=ITEMS,
+        promises=PROMISES,
         anchors={section.anchor for section in sections},
     )
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from standoff_studies.paper.broken_on_purpose.breaks import BREAKS, Break, broken
 from standoff_studies.paper.catalogue import chosen, make
 from standoff_studies.paper.figure import NOTHING, Statement
+from standoff_studies.paper.promises import faults
 from standoff_studies.paper.verdicts import Verdict
 
 FIGURES = tuple(entry.key for entry in chosen(["6-7", "9-11", "13-20"]))
@@ -33,6 +34,8 @@ class Noticed(NamedTuple):
         The words for the law that ran are different.
     error : str
         Why it could not be made; empty if it could.
+    rows : tuple of str
+        Sentences of ``promises.toml`` that are no longer true.
     """
 
     key: str
@@ -41,6 +44,7 @@ class Noticed(NamedTuple):
     mended: tuple[str, ...] = ()
     words: bool = False
     error: str = ""
+    rows: tuple[str, ...] = ()
 
 
 @cache
@@ -86,6 +90,7 @@ def _compared(key: str, before: tuple[Statement, ...]) -> Noticed:
         tuple(said for said, was, now in verdicts if was in GOOD and now is Verdict.OPEN),
         tuple(said for said, was, now in verdicts if was is Verdict.FAILS and now in GOOD),
         any(s.by != t.by for s, t in pairs),
+        rows=tuple(row.says for row, _ in faults(key, after)),
     )
 
 
@@ -135,5 +140,6 @@ def _told(one: Noticed) -> list[str]:
         *(f"✓ → ✗ {said}" for said in one.failed),
         *(f"✓ → – {said}" for said in one.open),
         *(f"✗ → ✓ {said}" for said in one.mended),
+        *(f"promise: {said}" for said in dict.fromkeys(one.rows)),
         *([f"could not be made: {one.error}"] if one.error else []),
     ]
