@@ -42,6 +42,7 @@ NOT_CALLED = {
     "decomposition": "needs CoACD; tests/bodies/test_meshes.py tries it",
     **dict.fromkeys(("Decomposition", "Fit"), "made by decomposition"),
     "PatchBounds": "made by surfaces",
+    "step_growth": "takes a tracker and levels, which check theirs; tests/control tries it",
     "Design": "takes a function by position, and any names; tests/design tries it",
     "Distances": "made by distances",
     "ServoReport": "made by servos",
