@@ -45,6 +45,11 @@ class PartReport:
         Proven bound of the part of it that comes from trimming curves, length.
     tolerance : float
         Greatest tolerance that the file gives an edge or a vertex, length.
+    accuracy : float
+        The one that the file states, length; 0 where it states none.
+    allowed : float
+        What its parts may miss each other by, length: the accuracy, four times the tolerance, or
+        the ``tolerance`` that was asked for.
     self_intersections : tuple of str
         What was found of places where its boundary meets itself; empty of a convex part.
     healed : tuple of str
@@ -69,11 +74,18 @@ class PartReport:
     slack: float = 0.0
     trim_bound: float = 0.0
     tolerance: float = 0.0
+    accuracy: float = 0.0
+    allowed: float = 0.0
     self_intersections: tuple[str, ...] = ()
     healed: tuple[str, ...] = ()
     refused: str = ""
     notes: tuple[str, ...] = ()
     seconds: float = 0.0
+
+    def claims(self) -> str:
+        """What the file says of its accuracy."""
+        stated = f"the file says {self.accuracy:.3g}" if self.accuracy else "the file says nothing"
+        return f"{stated}, and OpenCASCADE's tolerance is {self.tolerance:.3g}"
 
     def lines(self, unit: str = "") -> list[str]:
         """The report in lines of text."""
@@ -87,8 +99,9 @@ class PartReport:
         found += [
             f"  {'convex: a Body' if self.convex else 'not convex: a Boundary'}; "
             f"size {self.size:.6g}{after}, volume {self.volume:.6g}, area {self.area:.6g}",
-            f"  slack {self.slack:.3g}{after} (trims within {self.trim_bound:.3g}); the file's "
-            f"tolerance {self.tolerance:.3g}; volume and area differ from OpenCASCADE's by "
+            f"  slack {self.slack:.3g}{after}: its faces miss its edges by at most that (trims "
+            f"within {self.trim_bound:.3g}); {self.claims()}",
+            "  volume and area differ from OpenCASCADE's by "
             f"{self.volume_error:.1e} and {self.area_error:.1e}",
             f"  trimming curves: {trims or 'none'}; faces cut in two: {self.cut}; "
             f"{self.seconds:.2f} s",
@@ -105,7 +118,8 @@ class Part:
     Attributes
     ----------
     name : str
-        Of the instance and its assemblies, such as "rod-assembly/NUT::1".
+        Of the instance and its assemblies, such as "rod-assembly/NUT::1", as a person gave them;
+        with a number where another part has it already.
     shape : Boundary or Body
         In its own frame. Instances of one solid share it.
     pose : (4, 4) array
@@ -174,15 +188,8 @@ class Assembly:
 
     @property
     def by_name(self) -> dict[str, Part]:
-        """The parts by their names, with a number where another one has it already."""
-        found: dict[str, Part] = {}
-        for part in self.parts:
-            name, count = part.name, 1
-            while name in found:
-                count += 1
-                name = f"{part.name} ({count})"
-            found[name] = part
-        return found
+        """The parts by their names."""
+        return {part.name: part for part in self.parts}
 
     @property
     def shape(self) -> Boundary | Body:

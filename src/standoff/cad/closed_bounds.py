@@ -20,6 +20,7 @@ from standoff.kernels.body import layout as L
 AFFINE = np.array([0.0, 0.0, 1.0])
 ROUND_KINDS = {L.CYLINDER: (0,), L.CONE: (0,), L.TORUS: (0, 1), L.REVOLUTION: (0,)}
 """Parameters that are angles on which points depend by a sine and a cosine."""
+SPHERE_POINTS = 16
 RULED_KINDS = {L.CYLINDER: (1,), L.CONE: (1,), L.EXTRUSION: (1,), L.PLANE: (0, 1)}
 """Parameters on which points depend affinely."""
 
@@ -46,6 +47,23 @@ def closed_bound(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None
         c = 0.5 * (at + half)
         return _norms(c, 0.5 * (at - half), quarter - c)
     return None
+
+
+def sphere_bound(curve: Curve, surface: Surface) -> float:
+    """How far a line or an arc is at most from its image on a sphere, from the centre, length.
+
+    |C - c|² - R² is a polynomial of degree 2 in t, or in its sine and cosine: it is bounded by its
+    values at Chebyshev points, or at as many of a whole turn (see ``polynomial_bounds``).
+    """
+    radius = float(np.linalg.norm(surface.linear[:, 0]))
+    steps = np.pi * (np.arange(SPHERE_POINTS) + 0.5) / SPHERE_POINTS
+    if isinstance(curve, Line):
+        rows = np.stack([0.5 + 0.5 * np.cos(steps), 0.0 * steps, np.ones_like(steps)])
+    else:
+        rows = np.stack([np.cos(2.0 * steps), np.sin(2.0 * steps), np.ones_like(steps)])
+    away = (curve.basis() @ rows).T - surface.shift
+    off = np.abs(np.sum(away**2, axis=1) - radius**2).max() / np.cos(2.0 * np.pi / SPHERE_POINTS)
+    return float(off) / radius
 
 
 def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:

@@ -23,6 +23,18 @@ ENDINGS = {
 """The kinds of files by their endings."""
 
 ENTITY = re.compile(rb"(?:^|[;\s])#(\d+)\s*=")
+METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254}
+"""Units of length, in metres."""
+STATED = re.compile(
+    rb"UNCERTAINTY_MEASURE_WITH_UNIT\s*\(\s*(?:POSITIVE_)?LENGTH_MEASURE\s*\(\s*"
+    rb"(\d+\.?\d*(?:[Ee][-+]?\d+)?)\s*\)\s*,\s*#(\d+)"
+)
+UNIT = re.compile(
+    rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.|CONVERSION_BASED_UNIT\s*\(\s*'(\w+)'"
+)
+PREFIXES = {"": 1.0, "MILLI": 1e-3, "CENTI": 1e-2, "DECI": 0.1, "MICRO": 1e-6, "KILO": 1e3}
+UNITS_BY_NAME = {"INCH": 0.0254, "INCHES": 0.0254, "FOOT": 0.3048, "MILLIMETRE": 1e-3}
+"""Of units of length, in metres."""
 STEP_START = b"ISO-10303-21"
 STEP_END = b"END-ISO-10303-21"
 CHUNK = 1 << 22
@@ -81,6 +93,23 @@ def check_step(file: Path) -> None:
         )
     if not count:
         raise CadError(f"{file} has no entities.")
+
+
+def stated_accuracy(file: Path) -> float:
+    """The greatest accuracy that a STEP file states of its lengths, in metres; 0 if it states none.
+
+    Its exporter's claim: how far what should meet may be apart.
+    """
+    text = file.read_bytes()
+    found = 0.0
+    for value, unit in {match.groups() for match in STATED.finditer(text)}:
+        entity = re.search(rb"(?:^|[;\s])#%s\s*=([^;]*)" % unit, text)
+        given = UNIT.search(entity[1]) if entity else None
+        if given is not None:
+            prefix, name = ((part or b"").decode().upper() for part in given.groups())
+            metres = PREFIXES.get(prefix, 0.0) if not name else UNITS_BY_NAME.get(name, 0.0)
+            found = max(found, float(value) * metres)
+    return found
 
 
 def check_lines(file: Path, kind: str, start: bytes | None) -> None:

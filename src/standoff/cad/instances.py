@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,13 +10,24 @@ from typing import Any
 
 import numpy as np
 
-from standoff.cad.opencascade import KINDS, cast, compound, explored, is_kind, matrix_of
+from standoff.cad.files import METRES
+from standoff.cad.opencascade import (
+    KINDS,
+    cast,
+    caught_lines,
+    compound,
+    explored,
+    is_kind,
+    matrix_of,
+)
 from standoff.errors import CadError
 from standoff.geometry.validation import Array
 
-METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254}
-"""Units of length, in metres."""
 NAMES = {"millimetre": "mm", "centimetre": "cm", "metre": "m", "INCH": "inch", "inch": "inch"}
+NO_NAME = re.compile(r"=>\[[\d:]*\]|Open CASCADE STEP translator [\d. ]+|SOLID|COMPOUND|NONE")
+"""What OpenCASCADE writes for a name where nobody gave one."""
+MOST_LINES = 3
+"""Of OpenCASCADE, in a message."""
 Colour = tuple[float, float, float, float]
 
 
@@ -43,7 +55,7 @@ def step_instances(file: Path, unit: str) -> tuple[list[Instance], str]:
     reader.SetNameMode(True)
     reader.SetColorMode(True)
     document = _transferred(reader, file, unit)
-    return list(_walked(document)), _file_unit(reader.ChangeReader())
+    return list(_walked(document, file.stem)), _file_unit(reader.ChangeReader())
 
 
 def iges_instances(file: Path, unit: str) -> tuple[list[Instance], str]:
@@ -56,7 +68,7 @@ def iges_instances(file: Path, unit: str) -> tuple[list[Instance], str]:
     document = _transferred(reader, file, unit)
     name = reader.IGESModel().GlobalSection().UnitName()
     told = name.ToCString().strip().lower() if name is not None else ""
-    return list(_walked(document)), {"in": "inch"}.get(told, told)
+    return list(_walked(document, file.stem)), {"in": "inch"}.get(told, told)
 
 
 def brep_instances(file: Path) -> list[Instance]:
@@ -84,12 +96,16 @@ def _transferred(reader: Any, file: Path, unit: str) -> Any:
     from OCP.TDocStd import TDocStd_Document
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-    if reader.ReadFile(str(file)) != IFSelect_RetDone:
-        raise CadError(f"{file}: OpenCASCADE can't read it; it may be damaged.")
-    document = TDocStd_Document(TCollection_ExtendedString("standoff"))
-    XCAFDoc_DocumentTool.SetLengthUnit_s(document, METRES[unit])
-    if not reader.Transfer(document):
-        raise CadError(f"{file} has no shape that OpenCASCADE can make.")
+    with caught_lines() as lines:
+        read = reader.ReadFile(str(file)) == IFSelect_RetDone
+        document = TDocStd_Document(TCollection_ExtendedString("standoff"))
+        XCAFDoc_DocumentTool.SetLengthUnit_s(document, METRES[unit])
+        made = read and reader.Transfer(document)
+    told = "".join(f" OpenCASCADE: {line}." for line in lines[:MOST_LINES])
+    if not read:
+        raise CadError(f"{file}: OpenCASCADE can't read it; it may be damaged.{told}")
+    if not made:
+        raise CadError(f"{file} has no shape that OpenCASCADE can make.{told}")
     return document
 
 
@@ -102,7 +118,7 @@ def _file_unit(reader: Any) -> str:
     return " and ".join(sorted({NAMES.get(name, name) for name in told}))
 
 
-def _walked(document: Any) -> Iterator[Instance]:
+def _walked(document: Any, unnamed: str) -> Iterator[Instance]:
     from OCP.collections import Sequence_TDF_Label
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
@@ -110,17 +126,19 @@ def _walked(document: Any) -> Iterator[Instance]:
     roots = Sequence_TDF_Label()
     tool.GetFreeShapes(roots)
     for k in range(1, roots.Length() + 1):
-        yield from _below(roots.Value(k), np.eye(4), (), None)
+        yield from _below(roots.Value(k), np.eye(4), (), None, unnamed)
 
 
 def _below(
-    label: Any, pose: Array, names: tuple[str, ...], colour: Colour | None
+    label: Any, pose: Array, names: tuple[str, ...], colour: Colour | None, unnamed: str
 ) -> Iterator[Instance]:
+    """The instances below a label; `unnamed` is the name of those that neither they nor what they
+    are in has one: of the nearest assembly, or of the file."""
     from OCP.collections import Sequence_TDF_Label
     from OCP.TDF import TDF_Label
     from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
-    colour = _colour(label) or colour
+    colour, unnamed = _colour(label) or colour, _name(label) or unnamed
     if XCAFDoc_ShapeTool.IsAssembly_s(label):
         components = Sequence_TDF_Label()
         XCAFDoc_ShapeTool.GetComponents_s(label, components)
@@ -129,10 +147,11 @@ def _below(
             XCAFDoc_ShapeTool.GetReferredShape_s(component, target)
             at = pose @ matrix_of(XCAFDoc_ShapeTool.GetLocation_s(component))
             name = _name(component) or _name(target)
-            yield from _below(target, at, (*names, name), _colour(component) or colour)
+            below = (*names, name) if name else names
+            yield from _below(target, at, below, _colour(component) or colour, unnamed)
         return
     shape = XCAFDoc_ShapeTool.GetShape_s(label)
-    name = "/".join(names) or _name(label) or "part"
+    name = "/".join(names) or unnamed
     found = list(_solids(shape))
     for k, solid in enumerate(found, 1):
         yield _placed(solid, pose, name if len(found) == 1 else f"{name} {k}", colour)
@@ -166,7 +185,8 @@ def _name(label: Any) -> str:
     found = TDataStd_Name()
     if not label.FindAttribute(TDataStd_Name.GetID_s(), found):
         return ""
-    return str(found.Get().ToExtString()).strip()
+    name = str(found.Get().ToExtString()).strip()
+    return "" if NO_NAME.fullmatch(name) else name
 
 
 def _colour(label: Any) -> Colour | None:

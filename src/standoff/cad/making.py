@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -19,24 +21,27 @@ from standoff.bodies.moments.face_cells import face_cells
 from standoff.bodies.moments.flux import AREA, COLUMNS, Frame
 from standoff.bodies.report import BoundaryReport
 from standoff.bodies.tolerances import JOIN_TOLERANCE, ROUNDOFF
+from standoff.bodies.topology import Face
 from standoff.cad.assembly import PartReport
+from standoff.cad.closed_bounds import sphere_bound
 from standoff.cad.healing import healed
 from standoff.cad.limits import MOST_FACES
 from standoff.cad.measures import (
     area_of,
     faults_of,
     free_edges,
-    nearest,
+    judged,
+    named,
     size_of,
     tolerance_of,
     volume_of,
 )
-from standoff.cad.miss_bounds import miss_bound
-from standoff.cad.opencascade import explored, is_kind
+from standoff.cad.miss_bounds import miss_bound, side_miss
+from standoff.cad.opencascade import caught_lines, explored, is_kind
 from standoff.cad.pieces import Pieces, Refused, pieces_of
 from standoff.cad.seams import without_seams
 from standoff.cad.surfaces import kind_of
-from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE
+from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.validation import Array
 from standoff.wording import counted
@@ -57,58 +62,69 @@ class Made:
     solid: Solid | None = None
 
 
-def made_part(shape: Any, name: str, heal: bool) -> Made:
-    """A part of a solid of OpenCASCADE; refused with a reason rather than half made."""
+def made_part(
+    shape: Any, name: str, heal: bool, accuracy: float = 0.0, most: float | None = None
+) -> Made:
+    """A part of a solid of OpenCASCADE; refused with a reason rather than half made.
+
+    accuracy : that the file states, length; most : by how much its parts may miss each other,
+    length, by default what the file claims.
+    """
     start = perf_counter()
     told: tuple[str, ...] = ()
-    if heal:
-        shape, told = healed(shape)
-    report = PartReport(name, _kinds(shape), healed=told, tolerance=tolerance_of(shape))
-    try:
-        made, report, solid = _made(shape, report)
-    except (StandoffError, RuntimeError) as error:
-        spent = perf_counter() - start
-        return Made(None, replace(report, refused=str(error), seconds=spent))
-    return Made(made, replace(report, seconds=perf_counter() - start), solid)
+    with caught_lines() as lines:
+        if heal:
+            shape, told = healed(shape)
+        report = PartReport(
+            name, _kinds(shape), healed=told, tolerance=tolerance_of(shape), accuracy=accuracy
+        )
+        try:
+            made, report, solid = _made(shape, report, most)
+        except (StandoffError, RuntimeError) as error:
+            made, solid = None, None
+            report = replace(report, refused=str(error))
+    notes = (*report.notes, *(f"OpenCASCADE: {line}" for line in lines))
+    return Made(made, replace(report, notes=notes, seconds=perf_counter() - start), solid)
 
 
 def _kinds(shape: Any) -> dict[str, int]:
     return dict(Counter(kind_of(face) for face in explored(shape, "face")))
 
 
-def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport, Solid | None]:
+def _made(
+    shape: Any, report: PartReport, most: float | None
+) -> tuple[Boundary | Body, PartReport, Solid | None]:
     size = size_of(shape)
     _check(shape, size)
-    solid, cut = without_seams(shape)
-    pieces = pieces_of(solid, size, shape)
-    allowed = max(FILE_SLACK * report.tolerance, JOIN_TOLERANCE * size)
+    solid, cut, numbers = without_seams(shape)
+    pieces = pieces_of(solid, size, shape, numbers)
+    claimed = max(FILE_SLACK * report.tolerance, min(report.accuracy, MOST_ACCURACY * size))
+    allowed = max(claimed if most is None else most, JOIN_TOLERANCE * size)
+    report = replace(report, allowed=allowed)
     points = np.reshape(pieces.vertices, (-1, 3))
     try:
+        bound, face = trim_bound(pieces, size)
+        if bound > allowed:
+            raise Refused(_missed(report, bound, pieces.names[face]))
         parts = points, pieces.edges, pieces.faces
         joined = joined_parts(*parts, allowed, closed=True, senses=pieces.senses)
-        bound = trim_bound(pieces, size)
-        if bound > allowed:
-            raise Refused(
-                f"edges miss their faces by up to {bound:.3g}, the file allows {allowed:.3g}"
-            )
         residual = max(joined.residual, bound + pieces.moved)
         # what parts miss each other by counts from here on, no longer what they were allowed to
         within = max(residual, JOIN_TOLERANCE * size)
-        closing = replace(joined, residual=residual, tolerance=within)
-        boundary = made_boundary(report.name, closing)
+        joined = replace(joined, residual=residual, tolerance=within)
+        boundary = made_boundary(report.name, joined)
     except BodyError as error:
-        raise Refused(f"{error}{_place(error, pieces)}") from error
+        raise Refused(_in_file(str(error), pieces)) from error
     found = boundary.check()
     assert isinstance(found, BoundaryReport)
     near = FILE_AREA * found.volume + found.slack * found.area
-    volume = nearest(volume_of, shape, found.volume, near)
-    area = nearest(area_of, shape, found.area, FILE_AREA * found.area)
-    off = abs(found.volume - volume) / volume
-    _check_areas(boundary, pieces, size)
-    if abs(found.volume - volume) > near:
+    area, notes = _checked_areas(boundary, pieces, size)
+    volume, room = judged(solid, "volume", found.volume, near)
+    if abs(found.volume - volume) > room:
         raise Refused(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")
     body = _convex(boundary, pieces, joined)
-    solid = _not_crossing(boundary, pieces) if body is None else None
+    made = _not_crossing(boundary, pieces) if body is None else None
+    places = () if made is None else made.self_intersections.lines()
     report = replace(
         report,
         cut=cut,
@@ -118,12 +134,41 @@ def _made(shape: Any, report: PartReport) -> tuple[Boundary | Body, PartReport, 
         area=found.area,
         volume=found.volume,
         area_error=abs(found.area - area) / area,
-        volume_error=off,
+        volume_error=abs(found.volume - volume) / volume,
         slack=found.slack if body is None else body.check().slack,
         trim_bound=bound,
-        self_intersections=() if solid is None else tuple(solid.self_intersections.lines()),
+        self_intersections=tuple(_in_file(line, pieces) for line in places),
+        notes=notes,
     )
-    return body or boundary, report, solid
+    return body or boundary, report, made
+
+
+def _missed(report: PartReport, by: float, face: str) -> str:
+    """Why a part is refused whose edges leave its faces."""
+    return (
+        f"an edge of {face} leaves it by up to {by:.3g}, more than the {report.allowed:.3g} "
+        f"that are allowed ({report.claims()}): mend it, or give tolerance={1.01 * by:.2g}, "
+        "which becomes slack"
+    )
+
+
+NUMBERED = re.compile(r"\b([Ff]ace|[Ee]dge)(s?) (\d+(?:, \d+)*)")
+"""Faces and edges of a boundary in a message."""
+
+
+def _in_file(told: str, pieces: Pieces) -> str:
+    """A message with the file's names of faces, and places of edges."""
+
+    def name(match: re.Match[str]) -> str:
+        numbers = [int(number) for number in match[3].split(", ")]
+        if match[1] in ("Edge", "edge"):
+            curves = [pieces.edges[number].curve for number in numbers]
+            points = [curve.point(0.5 * (curve.first + curve.last)) for curve in curves]
+            places = ", ".join("({:.6g}, {:.6g}, {:.6g})".format(*point) for point in points)
+            return f"{match[1]}{match[2]} at {places}"
+        return match[1][0] + ", ".join(pieces.names[number] for number in numbers)[1:]
+
+    return NUMBERED.sub(name, told)
 
 
 def _not_crossing(boundary: Boundary, pieces: Pieces) -> Solid:
@@ -142,10 +187,7 @@ def _not_crossing(boundary: Boundary, pieces: Pieces) -> Solid:
 
 
 def _crossing(place: SelfIntersection, pieces: Pieces) -> str:
-    one, other = (
-        f"face {feature.index + 1} (a {pieces.kinds[feature.index]})"
-        for feature in (place.feature_a, place.feature_b)
-    )
+    one, other = (pieces.names[f.index] for f in (place.feature_a, place.feature_b))
     x, y, z = place.point_a
     return f"{one} crosses {other} near ({x:.6g}, {y:.6g}, {z:.6g}), by about {place.depth:.3g}"
 
@@ -159,7 +201,7 @@ def _check(shape: Any, size: float) -> None:
         raise Refused(f"it has {len(faces)} faces; at most {MOST_FACES} (standoff.cad.limits)")
     for number, face in enumerate(faces, 1):
         if abs(area_of(face)) <= LEAST_FACE * size**2:
-            raise Refused(f"face {number} (a {kind_of(face)}) has no area")
+            raise Refused(f"{named(face, number)} has no area")
     at = free_edges(shape)
     if at or not is_kind(shape, "solid"):
         where = ", ".join(at[:MOST_NAMED]) + (", ..." if len(at) > MOST_NAMED else "")
@@ -179,32 +221,49 @@ def _check(shape: Any, size: float) -> None:
         raise Refused("; ".join(faults[:MOST_NAMED]))
 
 
-def trim_bound(pieces: Pieces, size: float) -> float:
-    """A proven bound of how far edges are from their faces, length."""
-    worst = 0.0
-    for face in pieces.faces:
+def trim_bound(pieces: Pieces, size: float) -> tuple[float, int]:
+    """(a proven bound of how far edges, and vertices of collapsed sides, are from their faces,
+    length; of which face)."""
+    bounds = [
+        max([0.0, *_edge_misses(face, pieces, size), *_apex_misses(face, pieces)])
+        for face in pieces.faces
+    ]
+    worst = int(np.argmax(bounds))
+    return (bounds[worst] if bounds[worst] > ROUNDOFF * size else 0.0), worst
+
+
+def _edge_misses(face: Face, pieces: Pieces, size: float) -> Iterator[float]:
+    surface = face.charts[0]
+    for entry, (number, _) in enumerate(face.loop):
+        curve = pieces.edges[number].curve
         if len(face.charts) > 1:
-            continue  # exact: plane sections of a sphere
-        surface = face.charts[0]
-        for entry, (number, _) in enumerate(face.loop):
-            curve = pieces.edges[number].curve
+            yield sphere_bound(curve, surface)
+        else:
             pcurve = loop_pcurve(face, entry, pieces.edges, surface)
-            worst = max(worst, miss_bound(pcurve, curve, surface, size))
-    return worst if worst > ROUNDOFF * size else 0.0
+            yield miss_bound(pcurve, curve, surface, size)
 
 
-def _check_areas(boundary: Boundary, pieces: Pieces, size: float) -> None:
-    """Raise Refused if a face has not the area that OpenCASCADE gives it."""
-    slack = boundary.check().slack
+def _apex_misses(face: Face, pieces: Pieces) -> Iterator[float]:
+    for apex in face.apexes:
+        yield side_miss(face.charts[0], apex, pieces.vertices[apex.vertex])
+
+
+def _checked_areas(
+    boundary: Boundary, pieces: Pieces, size: float
+) -> tuple[float, tuple[str, ...]]:
+    """The area by OpenCASCADE, and notes; raises Refused if a face has another one than that."""
+    slack, total, notes = boundary.check().slack, 0.0, []
     for number, face in enumerate(pieces.sources):
         own = face_area(boundary, number, size)
         near = FILE_AREA * (own + FILE_AREA * size**2) + slack * size
-        theirs = nearest(area_of, face, own, near)
+        theirs, room = judged(face, "area", own, near)
+        total += theirs
         if abs(own - theirs) > near:
-            raise Refused(
-                f"face {number + 1} (a {pieces.kinds[number]}): its area is {own:.9g} here, "
-                f"{theirs:.9g} by OpenCASCADE"
-            )
+            told = f"its area is {own:.9g} here, {theirs:.9g} by OpenCASCADE"
+            if abs(own - theirs) > room:
+                raise Refused(f"{pieces.names[number]}: {told}")
+            notes.append(f"{pieces.names[number]}: {told}, whose trimming curves miss its edges")
+    return total, tuple(notes)
 
 
 def face_area(boundary: Boundary, number: int, size: float) -> float:
@@ -233,20 +292,6 @@ def _convex(boundary: Boundary, pieces: Pieces, joined: Joined) -> Body | None:
         return None
     try:
         parts = np.reshape(pieces.vertices, (-1, 3)), pieces.edges, pieces.faces
-        return proven_again(parts, boundary.name, 0.0, joined.tolerance, found.sewing_residual)
+        return proven_again(parts, boundary.name, 0.0, joined.tolerance, joined.residual)
     except StandoffError:
         return None
-
-
-def _place(error: BodyError, pieces: Pieces) -> str:
-    """Where the part is that an error names."""
-    if error.part is None:
-        return ""
-    kind, number = error.part
-    if kind == "edge":
-        curve = pieces.edges[number].curve
-        x, y, z = curve.point(0.5 * (curve.first + curve.last))
-        return f" (near ({x:.6g}, {y:.6g}, {z:.6g}))"
-    if kind == "face" and number < len(pieces.kinds):
-        return f" (a {pieces.kinds[number]})"
-    return ""

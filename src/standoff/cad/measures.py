@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from OCP.TopoDS import TopoDS_Edge
 
-from standoff.cad.opencascade import coordinates, explored
+from standoff.cad.opencascade import box_of, coordinates, explored
+from standoff.cad.quadrature import face_integrals
 from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import QUADRATURE
 
@@ -18,19 +18,25 @@ WRONG = (
     "BRepCheck_UnorientableShape",
 )
 """What no tolerance excuses."""
-PARTS = (16, 64)
-"""Into how many parts faces are cut, about, where integrals over the whole do not agree: near trims
-that cross many spans OpenCASCADE's rules are off by 1e-5."""
 
 
 def size_of(shape: Any) -> float:
     """Diagonal of a box around a shape."""
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRepBndLib import BRepBndLib
+    low, high = box_of(shape)
+    return float(np.linalg.norm(high - low))
 
-    box = Bnd_Box()
-    BRepBndLib.Add_s(shape, box, False)
-    return 0.0 if box.IsVoid() else float(np.sqrt(box.SquareExtent()))
+
+def named(face: Any, number: int) -> str:
+    """A face as a CAD program finds it: its number in the file's order, kind, and a point on it."""
+    from OCP.BOPTools import BOPTools_AlgoTools3D
+    from OCP.gp import gp_Pnt, gp_Pnt2d
+    from OCP.IntTools import IntTools_Context
+
+    point = gp_Pnt()
+    if BOPTools_AlgoTools3D.PointInFace_s(face, point, gp_Pnt2d(), IntTools_Context()):
+        return f"face {number} (a {kind_of(face)})"
+    x, y, z = coordinates(point)
+    return f"face {number} (a {kind_of(face)} at ({x:.6g}, {y:.6g}, {z:.6g}))"
 
 
 def area_of(shape: Any, adaptive: bool = False) -> float:
@@ -60,27 +66,23 @@ def volume_of(shape: Any, adaptive: bool = False) -> float:
     return float(found.Mass())
 
 
-def nearest(measure: Callable[[Any, bool], float], shape: Any, own: float, near: float) -> float:
-    """The measure that is nearest to one's own: no rule is right for all shapes. The adaptive one
-    is tried where the other is farther off than `near`, and where both are, on faces that are cut
-    into smaller ones."""
-    found = []
-    for parts in (0, 1, *PARTS):
-        given = shape if parts < 2 else _divided(shape, abs(area_of(shape)) / parts)
-        found.append(abs(measure(given, parts > 0)))
-        if abs(found[-1] - own) <= near:
-            break
-    return min(found, key=lambda value: abs(value - own))
-
-
-def _divided(shape: Any, most: float) -> Any:
-    """The same with its faces cut into parts of an area, length squared, at most."""
-    from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideArea
-
-    divider = ShapeUpgrade_ShapeDivideArea(shape)
-    divider.MaxArea = most
-    divider.Perform()
-    return divider.Result()
+def judged(shape: Any, what: str, own: float, near: float) -> tuple[float, float]:
+    """(area or volume, by how much one's own may differ from it): by OpenCASCADE's two rules, as
+    no one is right for all shapes, and where neither is nearer than `near` by a quadrature that
+    tells its error, and what the file's trimming curves miss their edges by."""
+    measure = {"area": area_of, "volume": volume_of}[what]
+    for adaptive in (False, True):
+        found = abs(measure(shape, adaptive))
+        if abs(found - own) <= near:
+            return found, near
+    faces = list(explored(shape, "face"))
+    low, high = box_of(shape)
+    parts = [face_integrals(face, 0.5 * (low + high)) for face in faces]
+    column, share = (0, 1.0) if what == "area" else (1, 1.0 / 3.0)
+    values = [part.values[column] for part in parts]
+    total = sum(abs(x) for x in values) if what == "area" else abs(sum(values))
+    room = sum(part.error[column] + part.room[column] for part in parts)
+    return float(share * total), float(near + share * room)
 
 
 def tolerance_of(shape: Any) -> float:
@@ -112,7 +114,7 @@ def faults_of(shape: Any) -> list[str]:
             first, second = TopoDS_Edge(), TopoDS_Edge()
             statuses.append(BRepCheck_Wire(wire).SelfIntersect(face, first, second))
             near = near if first.IsNull() else first
-        found += _told(f"face {number} (a {kind_of(face)})", statuses, f" near {_middle(near)}")
+        found += _told(named(face, number), statuses, f" near {_middle(near)}")
     return found
 
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from standoff.bodies.topology import Apex
 from standoff.cad.closed_bounds import closed_bound
 from standoff.cad.polynomial_bounds import polynomial_bound
 from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
@@ -28,7 +29,7 @@ from standoff.kernels.body import layout as L
 # Spans of an edge at first, and how often they are halved at most.
 EPS = float(np.finfo(np.float64).eps)
 FIRST_SPANS = 32
-MOST_HALVINGS = 9
+MOST_HALVINGS = 14
 
 
 def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> float:
@@ -56,6 +57,18 @@ def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> f
         if proven is not None:
             return proven
     return _interval_bound(pcurve, curve, surface, size)
+
+
+def side_miss(surface: Surface, apex: Apex, vertex: Array) -> float:
+    """A bound of how far a collapsed side of a surface is from its vertex, length."""
+    along, across = (0, 1) if apex.side[0] == "v" else (1, 0)
+    spans = np.linspace(apex.lo, apex.hi, FIRST_SPANS + 1)
+    rows = np.empty((FIRST_SPANS, 4))
+    rows[:, 2 * along], rows[:, 2 * along + 1] = spans[:-1], spans[1:]
+    rows[:, 2 * across : 2 * across + 2] = apex.level
+    away = _jets(surface, rectangles_boxes(rows))[0] - interval(vertex[:, None])
+    off = float(np.linalg.norm(away.magnitude, axis=0).max())
+    return off if np.isfinite(off) else np.inf
 
 
 def _interval_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> float:

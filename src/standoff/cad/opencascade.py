@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,41 @@ def coordinates(p: Any) -> Array:
     if hasattr(p, "Z"):
         return np.array([p.X(), p.Y(), p.Z()])
     return np.array([p.X(), p.Y()])
+
+
+def box_of(shape: Any) -> tuple[Array, Array]:
+    """(low, high) of a box around a shape; of nothing, at the origin."""
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+
+    box = Bnd_Box()
+    BRepBndLib.Add_s(shape, box, False)
+    if box.IsVoid():
+        return np.zeros(3), np.zeros(3)
+    return coordinates(box.CornerMin()), coordinates(box.CornerMax())
+
+
+@contextmanager
+def caught_lines() -> Iterator[list[str]]:
+    """Lines that OpenCASCADE would print on the terminal, once it is done."""
+    from OCP.Message import Message, Message_Gravity, Message_PrinterToReport, Message_Report
+
+    messenger, report = Message.DefaultMessenger_s(), Message_Report()
+    printers, printer = list(messenger.Printers()), Message_PrinterToReport()
+    lines: list[str] = []
+    printer.SetReport(report)
+    for one in printers:
+        messenger.RemovePrinter(one)
+    messenger.AddPrinter(printer)
+    try:
+        yield lines
+    finally:
+        messenger.RemovePrinter(printer)
+        for one in printers:
+            messenger.AddPrinter(one)
+        for gravity in ("Fail", "Alarm", "Warning", "Info"):
+            alerts = report.GetAlerts(getattr(Message_Gravity, f"Message_{gravity}"))
+            lines += [str(alert.GetMessageKey()).strip("* ") for alert in alerts]
 
 
 def frame_of(at: Any) -> tuple[Array, Array]:

@@ -15,12 +15,13 @@ import numpy as np
 
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.cad.curves import Converted, converted, isoline
+from standoff.cad.measures import named
 from standoff.cad.opencascade import cast, coordinates, explored, forward
 from standoff.cad.seams import once
 from standoff.cad.sphere_faces import sphere_by_angles, sphere_charts, sphere_sense
-from standoff.cad.surfaces import Carrier, basis_surface, carrier
+from standoff.cad.surfaces import Carrier, basis_surface, carrier, grown
 from standoff.cad.tolerances import MISSED_POLE
-from standoff.cad.trims import trim
+from standoff.cad.trims import extent, trim
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.pcurves import Pcurve
@@ -38,9 +39,8 @@ class Pieces:
     Attributes
     ----------
     vertices, edges, faces, senses : as for ``Boundary.from_brep``.
-    kinds : of the faces' surfaces.
     sources : the file's faces.
-    places : numbers of the file's faces, from 1, in its order.
+    names : of the file's faces, as a CAD program finds them.
     trims : how often a trimming curve was "exact", the "file"'s or "fitted".
     moved : how far a surface was moved at most, length.
     """
@@ -49,16 +49,17 @@ class Pieces:
     edges: list[Edge] = field(default_factory=list)
     faces: list[Face] = field(default_factory=list)
     senses: list[int | None] = field(default_factory=list)
-    kinds: list[str] = field(default_factory=list)
     sources: list[Any] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
     trims: Counter[str] = field(default_factory=Counter)
     moved: float = 0.0
 
 
-def pieces_of(solid: Any, size: float, original: Any = None) -> Pieces:
+def pieces_of(solid: Any, size: float, original: Any, numbers: Sequence[int]) -> Pieces:
     """The parts of a solid without seams that an angle can't take (``seams.without_seams``).
 
-    `original` is the solid before; edges that it lacks are isolines of their surfaces.
+    `original` is the solid before; edges that it lacks are isolines of their surfaces. `numbers`
+    are those of its faces of which the solid's are parts.
 
     Raises
     ------
@@ -69,20 +70,18 @@ def pieces_of(solid: Any, size: float, original: Any = None) -> Pieces:
 
     outer = BRepClass3d.OuterShell_s(solid)
     maker = _Maker(solid, size, original)
-    number = 0
+    waiting = iter(numbers)
     for shell in explored(solid, "shell"):
         cavity = not shell.IsSame(outer)
         for face in explored(shell, "face"):
-            number += 1
-            with_place = f"face {number}"
+            name = named(face, next(waiting))
+            maker.pieces.names.append(name)
             try:
                 maker.add(face, cavity)
-            except Refused as error:
-                raise Refused(f"{with_place}: {error}") from error
             except BodyError:
                 raise
             except StandoffError as error:
-                raise Refused(f"{with_place}: {error}") from error
+                raise Refused(f"{name}: {error}") from error
     return maker.pieces
 
 
@@ -176,6 +175,8 @@ class _Maker:
         on = carrier(geometry, over)
         uses = once(face)
         made = [m for e in uses if not BRep_Tool.Degenerated_s(e) for m in self._edges(e, face)]
+        if on.kind == "spline" and not any(BRep_Tool.Degenerated_s(e) for e in uses):
+            on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made]))
         sense = None
         if on.kind == "sphere":
             charts, trims = sphere_charts(
@@ -201,7 +202,6 @@ class _Maker:
         given = tuple(trims) if any(t is not None for t in trims) else ()
         self.pieces.faces.append(Face(tuple(charts), loop, tuple(apexes), given))
         self.pieces.senses.append(sense)
-        self.pieces.kinds.append(on.kind)
         self.pieces.sources.append(face)
         self.pieces.moved = max(self.pieces.moved, on.moved)
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 from standoff.cad.assembly import Assembly, Part, PartReport
-from standoff.cad.files import ENDINGS, check_lines, check_step, existing
+from standoff.cad.files import ENDINGS, METRES, check_lines, check_step, existing, stated_accuracy
+from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shown
 from standoff.errors import CadError, StandoffError, StandoffTypeError
 from standoff.wording import counted
@@ -17,7 +20,23 @@ UNITS = ("mm", "cm", "m", "inch")
 MOST_NAMED = 5
 
 
-def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all") -> Assembly:
+class Options(NamedTuple):
+    """How a file is read: the arguments of `read_step`."""
+
+    unit: str
+    heal: bool
+    keep: str
+    tolerance: float | None
+
+
+def read_step(
+    path: Any,
+    *,
+    unit: str = "mm",
+    heal: bool = False,
+    keep: str = "all",
+    tolerance: float | None = None,
+) -> Assembly:
     """The parts of a STEP file, with names, colours and places.
 
     Parameters
@@ -31,6 +50,11 @@ def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     keep : "all" or "readable"
         With "all", a part that is refused is an error, and nothing is returned; with "readable" it
         is left out and told in ``refusals``.
+    tolerance : float, optional
+        By how much faces, edges and vertices may miss each other, in `unit`; by default what the
+        file claims: the accuracy that it states, or four times the tolerances of its parts. What
+        they miss each other by is measured, told in the report, and subtracted from every lower
+        bound.
 
     Returns
     -------
@@ -51,20 +75,28 @@ def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     """
     start = perf_counter()
     file = existing(path)
-    checked = _checked(unit, heal, keep)
+    checked = _checked(unit, heal, keep, tolerance)
     check_step(file)
     from standoff.cad.instances import step_instances
 
     instances, file_unit = step_instances(file, unit)
-    return _assembly(file.name, instances, checked, file_unit, start)
+    accuracy = stated_accuracy(file) / METRES[unit]
+    return _assembly(file.name, instances, checked, (file_unit, accuracy), start)
 
 
-def read_iges(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all") -> Assembly:
+def read_iges(
+    path: Any,
+    *,
+    unit: str = "mm",
+    heal: bool = False,
+    keep: str = "all",
+    tolerance: float | None = None,
+) -> Assembly:
     """The solids of an IGES file; its loose faces are sewn only with ``heal=True``.
 
     Parameters
     ----------
-    path, unit, heal, keep : as for `read_step`.
+    path, unit, heal, keep, tolerance : as for `read_step`.
 
     Returns
     -------
@@ -77,20 +109,22 @@ def read_iges(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     """
     start = perf_counter()
     file = existing(path)
-    checked = _checked(unit, heal, keep)
+    checked = _checked(unit, heal, keep, tolerance)
     check_lines(file, "IGES", None)
     from standoff.cad.instances import iges_instances
 
     instances, file_unit = iges_instances(file, unit)
-    return _assembly(file.name, instances, checked, file_unit, start)
+    return _assembly(file.name, instances, checked, (file_unit, 0.0), start)
 
 
-def read_brep(path: Any, *, heal: bool = False, keep: str = "all") -> Assembly:
+def read_brep(
+    path: Any, *, heal: bool = False, keep: str = "all", tolerance: float | None = None
+) -> Assembly:
     """The solids of a BREP file, OpenCASCADE's own, whose lengths have no unit.
 
     Parameters
     ----------
-    path, heal, keep : as for `read_step`.
+    path, heal, keep, tolerance : as for `read_step`.
 
     Returns
     -------
@@ -104,19 +138,26 @@ def read_brep(path: Any, *, heal: bool = False, keep: str = "all") -> Assembly:
     """
     start = perf_counter()
     file = existing(path)
-    checked = _checked("", heal, keep)
+    checked = _checked("", heal, keep, tolerance)
     check_lines(file, "BREP", b"CASCADE Topology")
     from standoff.cad.instances import brep_instances
 
-    return _assembly(file.name, brep_instances(file), checked, "", start)
+    return _assembly(file.name, brep_instances(file), checked, ("", 0.0), start)
 
 
-def read_cad(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all") -> Assembly:
+def read_cad(
+    path: Any,
+    *,
+    unit: str = "mm",
+    heal: bool = False,
+    keep: str = "all",
+    tolerance: float | None = None,
+) -> Assembly:
     """A file of any of these kinds, by its ending.
 
     Parameters
     ----------
-    path, unit, heal, keep : as for `read_step`; a BREP file's lengths stay as they are.
+    path, unit, heal, keep, tolerance : as for `read_step`; a BREP file's lengths stay as they are.
 
     Returns
     -------
@@ -130,14 +171,20 @@ def read_cad(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "al
     file = existing(path)
     kind = ENDINGS.get(file.suffix.lower())
     if kind == "brep":
-        return read_brep(file, heal=heal, keep=keep)
+        return read_brep(file, heal=heal, keep=keep, tolerance=tolerance)
     if kind is None:
         raise CadError(f"{file}: give a file that ends in {', '.join(ENDINGS)}.", "path", path)
-    return (read_step if kind == "step" else read_iges)(file, unit=unit, heal=heal, keep=keep)
+    read = read_step if kind == "step" else read_iges
+    return read(file, unit=unit, heal=heal, keep=keep, tolerance=tolerance)
 
 
 def from_shape(
-    shape: Any, *, name: str = "part", heal: bool = False, keep: str = "all"
+    shape: Any,
+    *,
+    name: str = "part",
+    heal: bool = False,
+    keep: str = "all",
+    tolerance: float | None = None,
 ) -> Assembly:
     """The solids of a shape of OpenCASCADE, or of an object that wraps one.
 
@@ -146,7 +193,7 @@ def from_shape(
     shape : TopoDS_Shape, or an object of build123d or CadQuery
         Its attribute ``wrapped`` is taken; of a CadQuery workplane, ``val()``.
     name : str
-    heal, keep : as for `read_step`.
+    heal, keep, tolerance : as for `read_step`.
 
     Returns
     -------
@@ -159,7 +206,7 @@ def from_shape(
         As for `read_step`; not such an object.
     """
     start = perf_counter()
-    checked = _checked("", heal, keep)
+    checked = _checked("", heal, keep, tolerance)
     from standoff.cad.instances import shape_instances
 
     given = shape.val() if hasattr(shape, "val") and not hasattr(shape, "wrapped") else shape
@@ -170,30 +217,52 @@ def from_shape(
             "shape",
             shape,
         )
-    return _assembly(name, shape_instances(given, name), checked, "", start)
+    return _assembly(name, shape_instances(given, name), checked, ("", 0.0), start)
 
 
-def _checked(unit: str, heal: bool, keep: str) -> tuple[str, bool, str]:
+def _checked(unit: str, heal: bool, keep: str, tolerance: float | None) -> Options:
     if unit and unit not in UNITS:
         raise StandoffError(f"unit = {shown(unit)}: give one of {UNITS}.", "unit", unit)
     if not isinstance(heal, bool):
         raise StandoffTypeError(f"heal = {shown(heal)}: give True or False.", "heal", heal)
     if keep not in ("all", "readable"):
         raise StandoffError(f"keep = {shown(keep)}: give 'all' or 'readable'.", "keep", keep)
-    return unit, heal, keep
+    allowed = None if tolerance is None else magnitude(tolerance, "tolerance")
+    return Options(unit, heal, keep, allowed)
+
+
+def _numbered(instances: Sequence[Any]) -> list[Any]:
+    """The same, each of several of a name but the first with its number."""
+    times: Counter[str] = Counter()
+    taken = {instance.name for instance in instances}
+    found = []
+    for instance in instances:
+        times[instance.name] += 1
+        name = instance.name
+        while times[instance.name] > 1 and name in taken:
+            name = f"{instance.name} ({times[instance.name]})"
+            times[instance.name] += name in taken
+        taken.add(name)
+        found.append(replace(instance, name=name))
+    return found
 
 
 def _assembly(
     source: str,
     instances: Sequence[Any],
-    options: tuple[str, bool, str],
-    file_unit: str,
+    options: Options,
+    claims: tuple[str, float],
     start: float,
 ) -> Assembly:
-    """Make each solid once; raise if one is refused, unless only the readable ones are wanted."""
+    """Make each solid once; raise if one is refused, unless only the readable ones are wanted.
+
+    claims : of the file, its unit and its accuracy, length.
+    """
     from standoff.cad.making import Made, made_part
 
-    unit, heal, keep = options
+    unit, heal, keep, tolerance = options
+    file_unit, accuracy = claims
+    instances = _numbered(instances)
     if not instances:
         raise CadError(f"{source} has no solid.")
     kept: list[tuple[Any, Made]] = []
@@ -201,7 +270,7 @@ def _assembly(
     for instance in instances:
         made = next((m for shape, m in kept if shape.IsPartner(instance.shape)), None)
         if made is None:
-            made = made_part(instance.shape, instance.name, heal)
+            made = made_part(instance.shape, instance.name, heal, accuracy, tolerance)
             kept.append((instance.shape, made))
         if not made.report.faces:
             empty.append(f"{instance.name}: left out, it has no face")
@@ -225,13 +294,17 @@ def _assembly(
     return Assembly(tuple(parts), unit, file_unit, source, (*refusals, *empty), spent)
 
 
-def reports_of(path: Any, *, heal: bool = False) -> tuple[PartReport, ...]:
+def reports_of(
+    path: Any, *, heal: bool = False, tolerance: float | None = None
+) -> tuple[PartReport, ...]:
     """What is found about every different solid of a file, refused ones included.
 
     Parameters
     ----------
     path : str or Path
     heal : bool
+    tolerance : float, optional
+        As for `read_step`.
 
     Returns
     -------
@@ -246,18 +319,20 @@ def reports_of(path: Any, *, heal: bool = False) -> tuple[PartReport, ...]:
     from standoff.cad.instances import brep_instances, iges_instances, step_instances
     from standoff.cad.making import made_part
 
-    kind = ENDINGS.get(file.suffix.lower())
+    kind, accuracy = ENDINGS.get(file.suffix.lower()), 0.0
     if kind == "step":
         check_step(file)
         instances = step_instances(file, "mm")[0]
+        accuracy = stated_accuracy(file) / METRES["mm"]
     elif kind == "iges":
         instances = iges_instances(file, "mm")[0]
     else:
         instances = brep_instances(file)
     seen: list[Any] = []
     found = []
-    for instance in instances:
+    for instance in _numbered(instances):
         if not any(instance.shape.IsPartner(one) for one in seen):
             seen.append(instance.shape)
-            found.append(made_part(instance.shape, instance.name, heal).report)
+            made = made_part(instance.shape, instance.name, heal, accuracy, tolerance)
+            found.append(made.report)
     return tuple(found)

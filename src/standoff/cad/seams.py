@@ -20,11 +20,13 @@ from standoff.geometry.curves import FULL_TURN
 ANGULAR_U = ("CylindricalSurface", "ConicalSurface", "SphericalSurface")
 
 
-def without_seams(solid: Any) -> tuple[Any, int]:
-    """The solid with such faces cut, and how many they were."""
-    closed = [face for face in explored(solid, "face") if _must_be_cut(face)]
+def without_seams(solid: Any) -> tuple[Any, int, list[int]]:
+    """The solid with such faces cut, how many they were, and of which of its faces, counted from 1,
+    those of the result are parts."""
+    faces = list(explored(solid, "face"))
+    closed = [face for face in faces if _must_be_cut(face)]
     if not closed:
-        return solid, 0
+        return solid, 0, list(range(1, len(faces) + 1))
     from OCP.ShapeBuild import ShapeBuild_ReShape
     from OCP.ShapeUpgrade import ShapeUpgrade_ClosedFaceDivide
 
@@ -38,7 +40,8 @@ def without_seams(solid: Any) -> tuple[Any, int]:
         result = divider.Result()
         if not result.IsSame(face):
             context.Replace(face, result)
-    return cast("solid", context.Apply(solid)), len(closed)
+    numbers = [n for n, face in enumerate(faces, 1) for _ in explored(context.Apply(face), "face")]
+    return cast("solid", context.Apply(solid)), len(closed), numbers
 
 
 def once(face: Any) -> list[Any]:

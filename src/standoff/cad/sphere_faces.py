@@ -42,7 +42,10 @@ def sphere_charts(
     on = Carrier("sphere", chart, IDENTITY, inverse)
     flat = (ConicArc, Line)
     return (chart,), [
-        None if isinstance(c, flat) else fit(c, on, None, FITTED_TRIM * size) for c in curves
+        None
+        if isinstance(c, flat)
+        else fit(c, on, lambda ts, c=c: inverse(c.points(ts)), None, FITTED_TRIM * size)
+        for c in curves
     ]
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from standoff.bodies.tolerances import DOMAIN_SPARE
 from standoff.cad.curves import NoExactForm, converted, repeated
 from standoff.cad.lowered_degree import lowered
 from standoff.cad.opencascade import coordinates, frame_of
 from standoff.cad.tolerances import OFF_PLANE_PROFILE
+from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.knots import GREATEST_DEGREE
 from standoff.geometry.nurbs import NurbsSurface
@@ -21,6 +23,9 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.torus import Torus
 from standoff.geometry.validation import Array
+
+# How far beyond its trimming curves' ends a spline goes on, and at most, in its last span.
+GROWTH, MOST_GROWTH = 1.5, 0.02
 
 Range = tuple[float, float, float, float]
 Angles = tuple[bool, bool]
@@ -196,6 +201,34 @@ def _net(geometry: Any) -> tuple[Array, Array | None, Array, Array]:
     knots_u = repeated([geometry.UKnot(k) for k in us], [geometry.UMultiplicity(k) for k in us])
     knots_v = repeated([geometry.VKnot(k) for k in vs], [geometry.VMultiplicity(k) for k in vs])
     return points, weights, knots_u, knots_v
+
+
+def grown(on: Carrier, low: Array, high: Array) -> Carrier:
+    """The same with a spline that goes on beyond its domain as what it is there, up to the lowest
+    and highest parameters, (2,) each, that its trimming curves have."""
+    made = on.surface
+    if not isinstance(made, NurbsSurface):
+        return on
+    for axis, last in ((0, False), (0, True), (1, False), (1, True)):
+        vector = (made.vector_u, made.vector_v)[axis]
+        a, b = (float(t) for t in (vector.breaks[-2:] if last else vector.breaks[:2]))
+        beyond = float(high[axis] - b if last else a - low[axis])
+        if not DOMAIN_SPARE * (b - a) < beyond < MOST_GROWTH * (b - a):
+            continue
+        degree, inner = vector.degree, a if last else b
+        times = 0 if len(vector.breaks) == 2 else degree - int(np.sum(vector.knots == inner))
+        made = made.refined(**{("knots_u", "knots_v")[axis]: [inner] * times})
+        weights = made.weights[..., None]
+        net = np.moveaxis(np.concatenate([made.control_points * weights, weights], 2), axis, 0)
+        knots = [made.knots_u.copy(), made.knots_v.copy()]
+        share = GROWTH * beyond / (b - a)
+        rows = slice(-degree - 1, None) if last else slice(degree + 1)
+        matrix = segment(degree, 0.0, 1.0 + share) if last else segment(degree, -share, 1.0)
+        net[rows] = np.tensordot(matrix, net[rows], 1)
+        knots[axis][rows] = b + share * (b - a) if last else a - share * (b - a)
+        net = np.moveaxis(net, 0, axis)
+        made = NurbsSurface(net[..., :3] / net[..., 3:], *knots, net[..., 3])
+    return replace(on, surface=made)
 
 
 def _extrusion(geometry: Any, over: Range) -> Carrier:

@@ -12,6 +12,14 @@ FITTED_TRIM: Final = 1e-10
 """A fitted trimming curve is good enough when its points miss the edge by at most this fraction of
 the part's size: a tenth of what parts may miss each other by."""
 
+KEPT_TRIM: Final = 2e-8
+"""Fraction of the part's size by which a file's trimming curve may miss its edge and still be taken
+as it is, on surfaces where a nearer one has to be searched for and has more spans."""
+
+LEAST_ANGLE: Final = 1e-14
+"""Squared sine of the angle between a surface's tangents below which they are parallel: a collapsed
+side, or roundoff."""
+
 OFF_PLANE_PROFILE: Final = 1e-9
 """A profile of a surface of revolution may leave the plane of its axis by this fraction of its
 extent; it is moved into it, and the distance joins the slack."""
@@ -35,6 +43,10 @@ roundoff of its corners."""
 FILE_SLACK: Final = 4.0
 """Parts may miss each other by this many times the file's greatest tolerance: an edge and a vertex
 each have one, on two faces. What they miss by is measured, and joins the slack."""
+
+MOST_ACCURACY: Final = 1e-3
+"""The accuracy that a file states counts up to this fraction of a part's size: more is a mistake in
+its unit, and would take parts that gape for closed ones. ``tolerance=`` allows it."""
 
 SEWN_AT_LEAST: Final = 1e-7
 """Length, in the file's unit, within which healing sews at least: OpenCASCADE's own precision."""

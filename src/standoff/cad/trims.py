@@ -7,12 +7,14 @@ bounded in ``miss_bounds``.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import scipy
 
+from standoff.bodies.tolerances import DOMAIN_SPARE
 from standoff.cad.curves import (
     Converted,
     NoExactForm,
@@ -26,7 +28,14 @@ from standoff.cad.curves import (
 from standoff.cad.miss_bounds import misses
 from standoff.cad.opencascade import coordinates
 from standoff.cad.surfaces import Carrier
-from standoff.cad.tolerances import AT_POLE, CONSTANT, FITTED_TRIM
+from standoff.cad.tolerances import (
+    AT_POLE,
+    CONSTANT,
+    FITTED_TRIM,
+    KEPT_TRIM,
+    LEAST_ANGLE,
+    SAME_KNOT,
+)
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.exact_pcurves import pcurve_of
@@ -37,6 +46,9 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.kernels.entries.queries import surface_jets
+
+Inverse = Callable[[Array], Array]
 
 # How often the spans of a fitted trimming curve are halved at most.
 FIT_HALVINGS = 6
@@ -44,6 +56,8 @@ FIT_HALVINGS = 6
 NEAR_ENOUGH = 1.5
 # Points of each span at which a trimming curve is compared with its edge.
 COMPARED = 33
+# Steps of Newton's method from the file's trimming curve to the nearest points of a surface.
+FEET_STEPS = 12
 
 
 def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcurve | None, str]:
@@ -84,25 +98,93 @@ def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcur
         flat = on.inverse(curve.control_points)
         return NurbsPcurve(flat, curve.knots, curve.weights), "exact"
     found = of_file(geometry, edge, on) if geometry is not None and edge.affine else None
-    if on.inverse is None:
+    if on.inverse is None and found is None:
+        raise NoExactForm("an edge without a trimming curve on it")
+    missed = np.inf if found is None else miss(found, curve, surface)
+    if found is not None and on.inverse is None:
+        at = found.places(np.linspace(curve.first, curve.last, COMPARED))
+        low, high = _limits(on)
+        room = DOMAIN_SPARE * np.where(np.isfinite(high - low), high - low, 0.0)
+        inside = np.all((low - room <= at) & (at <= high + room))
+        missed = missed if inside else np.inf
+    if on.inverse is None and missed <= KEPT_TRIM * size:
+        assert found is not None
+        return found, "file"
+    inverse = _inverse(on, curve, found)
+    enough = NEAR_ENOUGH * off_surface(curve, surface, inverse) + FITTED_TRIM * size
+    if found is not None and missed <= enough:
+        return found, "file"
+    try:
+        fitted = fit(curve, on, inverse, hint(geometry, edge, on), enough)
+    except StandoffError:  # its points have no smooth trimming curve
         if found is None:
-            raise NoExactForm("an edge without a trimming curve on it")
+            raise
         return found, "file"
-    enough = NEAR_ENOUGH * off_surface(curve, on) + FITTED_TRIM * size
-    if found is not None and miss(found, curve, surface) <= enough:
-        return found, "file"
-    fitted = fit(curve, on, hint(geometry, edge, on), enough)
-    if found is not None and miss(found, curve, surface) <= miss(fitted, curve, surface):
+    if found is not None and missed <= miss(fitted, curve, surface):
         return found, "file"
     return fitted, "fitted"
 
 
-def off_surface(curve: Curve, on: Carrier) -> float:
+def _inverse(on: Carrier, curve: Curve, found: Pcurve | None) -> Inverse:
+    """From parameters of a curve to those of its points' feet on a surface, (n, 2): in closed form,
+    or from the file's trimming curve, which tells about where they are."""
+    closed = on.inverse
+    if closed is not None:
+        return lambda ts: closed(curve.points(ts))
+    assert found is not None
+    return lambda ts: feet(on, curve.points(ts), found.places(ts))
+
+
+def feet(on: Carrier, points: Array, near: Array) -> Array:
+    """Parameters (n, 2) of points' feet on a surface, within its domain; from parameters near them
+    by Newton's method. Where it gets no nearer, they stay."""
+    surface = on.surface
+    low, high = _limits(on)
+    at, best = np.clip(near, low, high), near
+    least = np.full(len(points), np.inf)
+    for _ in range(FEET_STEPS):
+        jets = np.empty((len(points), 18))
+        surface_jets(surface.reals, surface.kind, 0, np.ascontiguousarray(at), jets)
+        away, xu, xv = points - jets[:, :3], jets[:, 3:6], jets[:, 6:9]
+        off = np.linalg.norm(away, axis=1)
+        best = np.where((off < least)[:, None], at, best)
+        least = np.minimum(off, least)
+        metric = [np.sum(a * b, axis=1) for a, b in ((xu, xu), (xu, xv), (xv, xv))]
+        slopes = [np.sum(a * away, axis=1) for a in (xu, xv)]
+        area = metric[0] * metric[2] - metric[1] ** 2
+        area = np.where(area > LEAST_ANGLE * metric[0] * metric[2], area, np.inf)
+        step = [
+            (metric[2] * slopes[0] - metric[1] * slopes[1]) / area,
+            (metric[0] * slopes[1] - metric[1] * slopes[0]) / area,
+        ]
+        at = np.clip(at + np.stack(step, axis=1), low, high)
+    return np.asarray(best)
+
+
+def extent(edges: Sequence[tuple[Converted, Any]]) -> tuple[Array, Array]:
+    """The lowest and highest parameters, (2,) each, that the file's trimming curves of edges have
+    at samples."""
+    rows = [
+        coordinates(flat.Value(t))
+        for edge, flat in edges
+        if flat is not None and edge.affine
+        for t in edge.own(np.linspace(edge.curve.first, edge.curve.last, COMPARED)).tolist()
+    ]
+    uv = np.reshape(rows, (-1, 2))
+    return uv.min(axis=0, initial=np.inf), uv.max(axis=0, initial=-np.inf)
+
+
+def _limits(on: Carrier) -> tuple[Array, Array]:
+    """(lowest, highest) parameters of a surface's domain; an angle has none."""
+    low, high = np.reshape(on.surface.domain, (2, 2)).T
+    return np.where(on.angles, -np.inf, low), np.where(on.angles, np.inf, high)
+
+
+def off_surface(curve: Curve, surface: Surface, inverse: Inverse) -> float:
     """How far a curve is from a surface at samples, length: no trimming curve is nearer."""
-    assert on.inverse is not None
-    points = curve.points(np.linspace(curve.first, curve.last, COMPARED))
-    feet = on.surface.points(on.inverse(points))
-    return float(np.linalg.norm(points - feet, axis=1).max())
+    ts = np.linspace(curve.first, curve.last, COMPARED)
+    off = curve.points(ts) - surface.points(inverse(ts))
+    return float(np.linalg.norm(off, axis=1).max())
 
 
 def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
@@ -207,33 +289,58 @@ def hint(geometry: Any, edge: Converted, on: Carrier) -> Array | None:
     return found
 
 
-def fit(curve: Curve, on: Carrier, near: Array | None, enough: float) -> NurbsPcurve:
-    """A polynomial trimming curve through the parameters of a curve's points, its spans halved
-    until it is near enough, length."""
-    assert on.inverse is not None
-    inverse = on.inverse
+def fit(
+    curve: Curve, on: Carrier, inverse: Inverse, near: Array | None, enough: float
+) -> NurbsPcurve:
+    """A polynomial trimming curve through the parameters of a curve's points: over the whole, then
+    over the curve's own spans, of which those are halved that are not near enough, length."""
 
     def places(ts: Array) -> Array:
-        uv = inverse(curve.points(ts))
+        uv = inverse(ts)
         for t, way in ((curve.first, 1.0), (curve.last, -1.0)):
-            for row in uv[ts == t]:
+            for row in uv[ts == t] if on.inverse is not None else ():
                 if on.angles[0] and _at_pole(on, row):
                     # there the angle is that in which the curve leaves
                     beside = curve.point(t) + way * curve.jet(t)[1]
-                    uv[ts == t, 0] = inverse(beside[None])[0, 0]
+                    uv[ts == t, 0] = on.inverse(beside[None])[0, 0]
         for k in (0, 1):
             if on.angles[k]:
                 uv[:, k] = np.unwrap(uv[:, k])
         return uv
 
     breaks = np.array([curve.first, curve.last])
-    found = None
-    for _ in range(FIT_HALVINGS):
-        found = _fitted(places, breaks, on.angles, near)
-        if miss(found, curve, on.surface) <= enough:
+    for halving in range(FIT_HALVINGS + 1):
+        found = _fitted(places, breaks, on, near)
+        ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(breaks)])
+        off = misses(found, curve, on.surface, ts).reshape(-1, COMPARED).max(axis=1)
+        if halving == FIT_HALVINGS or off.max() <= enough:
             break
-        breaks = np.sort(np.concatenate([breaks, 0.5 * (breaks[1:] + breaks[:-1])]))
-    assert found is not None
+        if halving == 0 and (crossed := _crossed(places, curve, on.surface)):
+            breaks = np.unique([*curve.spans(), *crossed])
+        else:
+            middles = 0.5 * (breaks[1:] + breaks[:-1])[off > enough]
+            breaks = np.sort(np.concatenate([breaks, middles]))
+    return found
+
+
+def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
+    """Where a curve's parameters are not smooth: at its own knots, and where it crosses those of a
+    surface."""
+    ts = np.unique([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
+    near = SAME_KNOT * (curve.last - curve.first)
+    found = curve.spans()[1:-1].tolist()
+    uv = places(ts)
+    for k, levels in enumerate(surface.analytic_breaks()):
+        for level in np.asarray(levels).tolist():
+            side = uv[:, k] - level
+            for m in np.flatnonzero(side[1:] * side[:-1] < 0.0).tolist():
+
+                def away(t: float, k: int = k, level: float = level) -> float:
+                    return float(places(np.array([t]))[0, k]) - level
+
+                if away(ts[m]) * away(ts[m + 1]) < 0.0:
+                    t = float(scipy.optimize.brentq(away, ts[m], ts[m + 1]))
+                    found += [t] if curve.first + near < t < curve.last - near else []
     return found
 
 
@@ -246,13 +353,14 @@ def _at_pole(on: Carrier, uv: Array) -> bool:
 def _fitted(
     places: Callable[[Array], Array],
     breaks: Array,
-    angles: tuple[bool, bool],
+    on: Carrier,
     near: Array | None,
 ) -> NurbsPcurve:
     points, knots = interpolated(places, breaks)
     if near is not None:
         turns = FULL_TURN * np.round((near - points[len(points) // 2]) / FULL_TURN)
-        points = points + np.where(angles, turns, 0.0)
+        points = points + np.where(on.angles, turns, 0.0)
+    points = np.clip(points, *_limits(on))  # the curve stays within the hull of its points
     return NurbsPcurve(straightened(points), knots)
 
 
