@@ -63,7 +63,7 @@ def sphere_bound(curve: Curve, surface: Surface) -> float:
         rows = np.stack([np.cos(2.0 * steps), np.sin(2.0 * steps), np.ones_like(steps)])
     away = (curve.basis() @ rows).T - surface.shift
     off = np.abs(np.sum(away**2, axis=1) - radius**2).max() / np.cos(2.0 * np.pi / SPHERE_POINTS)
-    return float(off) / radius
+    return float(off / (radius + np.sqrt(max(radius**2 - off, 0.0))))
 
 
 def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:

@@ -50,12 +50,13 @@ def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> f
         Infinite where the surface has no bounds.
     """
     closed = closed_bound(pcurve, curve, surface)
-    if closed is not None:
+    if closed is not None and closed <= BOUND_FLOOR * size:
         return closed
+    proven = None
     if isinstance(curve, NurbsCurve):
         proven = polynomial_bound(pcurve, curve, surface)
-        if proven is not None:
-            return proven
+    if closed is not None or proven is not None:
+        return min(x for x in (closed, proven) if x is not None)
     return _interval_bound(pcurve, curve, surface, size)
 
 

@@ -55,7 +55,9 @@ def polynomial_bound(pcurve: Pcurve, curve: NurbsCurve, surface: Surface) -> flo
 
 def _spline(surface: Surface, along: int | None) -> tuple[int, Array] | None:
     """(degree, weights) of a spline surface along u (0) or v (1), or of both degrees together; of a
-    swept one, those of its profile, along that."""
+    plane; of a swept one, those of its profile, along that."""
+    if surface.kind == L.PLANE:
+        return 1, np.ones(1)
     if isinstance(surface, NurbsSurface):
         both = sum(surface.degrees) if along is None else surface.degrees[along]
         return both, surface.weights

@@ -51,7 +51,7 @@ from standoff.kernels.entries.queries import surface_jets
 Inverse = Callable[[Array], Array]
 
 # How often the spans of a fitted trimming curve are halved at most.
-FIT_HALVINGS = 6
+FIT_HALVINGS = 12
 # A trimming curve is near enough at this many times its edge's own distance from the surface.
 NEAR_ENOUGH = 1.5
 # Points of each span at which a trimming curve is compared with its edge.

@@ -21,7 +21,9 @@ from standoff.cli.option_groups import (
     NO_PAPER_FLAGS,
     NO_SOLID_FLAGS,
     OWN_FRAMES,
+    READ_AS_IT_IS,
     WHOLE_SPAN,
+    CadFlags,
     FileFlags,
     FrameFlags,
     LawFlags,
@@ -133,6 +135,7 @@ class ClearanceCommand:
     """Contacts that are meant; docs/clearance.md describes the format."""
     files: Annotated[ClearanceFiles, group("file")] = ClearanceFiles()
     report: Annotated[ReportFlags, group("report")] = AS_USUAL
+    cad: Annotated[CadFlags, group("CAD")] = READ_AS_IT_IS
 
 
 @dataclass(frozen=True)
@@ -154,6 +157,7 @@ class CheckCommand:
     this file (.png, .svg or .pdf); with several, each gets its own, OUT-NAME.png."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the report as JSON."""
+    cad: Annotated[CadFlags, group("CAD")] = READ_AS_IT_IS
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from standoff.cad.files import ENDINGS
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
 from standoff.cli.facts import json_text
+from standoff.cli.option_groups import READ_AS_IT_IS, CadFlags
 from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
@@ -27,6 +28,15 @@ def is_cad_file(what: str) -> bool:
     return Path(what).suffix.lower() in ENDINGS
 
 
+def no_cad_file(what: object, flags: CadFlags) -> None:
+    """Raise CommandError if options that are for CAD files are given with another one."""
+    if flags != READ_AS_IT_IS:
+        raise CommandError(
+            f"--tolerance and --heal: they are for CAD files, and {what} is none; of a scene's "
+            "parts, give them as keys of the body"
+        )
+
+
 def run_check_cad(command: CheckCommand) -> int:
     """Report every part, refused ones too.
 
@@ -40,7 +50,7 @@ def run_check_cad(command: CheckCommand) -> int:
     try:
         from standoff.cad import read_cad
 
-        assembly = read_cad(Path(command.what), keep="readable")
+        assembly = read_cad(Path(command.what), keep="readable", **asdict(command.cad))
     except (StandoffError, OSError, ModuleNotFoundError) as error:
         raise CommandError(str(error)) from error
     chosen = _chosen(list(assembly), command.body)

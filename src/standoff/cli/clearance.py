@@ -12,6 +12,7 @@ from standoff.clearance.fits import load_fits
 from standoff.clearance.over_time import bounds_over, walk
 from standoff.clearance.report import Looked, Report, Wanted, bounds_of, nearest_of, report_on
 from standoff.cli.arguments import ClearanceCommand
+from standoff.cli.check_cad import no_cad_file
 from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode
@@ -39,6 +40,7 @@ def run_clearance(command: ClearanceCommand) -> int:
         from standoff.cli.clearance_assembly import run_on_assembly
 
         return run_on_assembly(command)
+    no_cad_file(command.scene, command.cad)
     scene = load_scene(command.scene).as_world
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     times = scene.times() if command.motion else None

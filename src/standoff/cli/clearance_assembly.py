@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
+from standoff.cli.option_groups import CadFlags
 from standoff.cli.output import write_whole
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
@@ -48,7 +50,7 @@ def run_on_assembly(command: ClearanceCommand) -> int:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     check_files(command)
-    file, parts = _read(command.scene)
+    file, parts = _read(command.scene, command.cad)
     within = math.inf if command.within is None else command.within
     if command.min is not None:
         within = max(within, command.min)
@@ -73,10 +75,10 @@ def _report(file: AssemblyFile, parts: dict[str, Any], within: float, wanted: Wa
     return report_on(world, near, bounds_of(world, answer, near), wanted)
 
 
-def _read(path: Path) -> tuple[AssemblyFile, dict[str, Any]]:
+def _read(path: Path, cad: CadFlags) -> tuple[AssemblyFile, dict[str, Any]]:
     """The file, and the parts in their own frames."""
     try:
-        assembly = read_cad(path)
+        assembly = read_cad(path, **asdict(cad))
         parts = assembly.by_name
         places = {name: Pose.of(part.pose) for name, part in parts.items()}
     except (StandoffError, OSError) as error:

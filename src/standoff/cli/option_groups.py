@@ -32,6 +32,19 @@ def _of_paper_alone(option: Option) -> bool:
     return [law.name for law in laws_with(option.name)] == ["paper"]
 
 
+@dataclass(frozen=True)
+class CadFlags:
+    """How a CAD file (STEP, BREP or IGES) is read."""
+
+    tolerance: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """By how much faces, edges and vertices may miss each other, in mm; by default what the file
+    claims. What they miss each other by becomes slack."""
+    heal: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Let OpenCASCADE repair shapes that are refused as they are."""
+
+
+READ_AS_IT_IS = CadFlags()
+
 if TYPE_CHECKING:
 
     class LawFlags:

@@ -16,7 +16,7 @@ from standoff.scene.reader import Array, Table, unknown_name
 from standoff.wording import printable
 from standoff.world.shapes import Shape, as_shape
 
-KEYS = ("body", "part", "heal")
+KEYS = ("body", "part", "heal", "tolerance")
 """Of a body that is read from a file."""
 
 UNITS = {"mm": "mm", "cm": "cm", "m": "m", "in": "inch", "inch": "inch"}
@@ -57,7 +57,7 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
     Parameters
     ----------
     table : Table
-        With ``body``, and optionally ``part`` and ``heal``.
+        With ``body``, and optionally ``part``, ``heal`` and ``tolerance``.
     unit : str
         The scene's label of lengths.
     beside : sequence of str
@@ -72,9 +72,10 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
     table.expect(*KEYS, *beside)
     path = existing_file(table, "body", 'body = "part.step"')
     heal = table.true_or_false("heal") if "heal" in table else False
+    tolerance = table.positive("tolerance") if "tolerance" in table else None
     ending = path.suffix.lower()
     if ending == KEPT:
-        for key in ("part", "heal"):
+        for key in ("part", "heal", "tolerance"):
             if key in table:
                 raise table.error("is for CAD files: a file of Standoff's own has one part", key)
         return table.build(lambda: _kept(path), "body")
@@ -93,7 +94,8 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
         )
     written = path.stat()
     version = written.st_mtime_ns, written.st_size
-    parts = table.build(lambda: _parts(path, version, UNITS.get(unit, "mm"), heal), "body")
+    how = UNITS.get(unit, "mm"), heal, tolerance
+    parts = table.build(lambda: _parts(path, version, *how), "body")
     return _chosen(table, parts)
 
 
@@ -120,12 +122,14 @@ class _Parts(NamedTuple):
 
 
 @lru_cache(maxsize=FILES)
-def _parts(path: Path, version: tuple[int, int], unit: str, heal: bool) -> _Parts:
+def _parts(
+    path: Path, version: tuple[int, int], unit: str, heal: bool, tolerance: float | None
+) -> _Parts:
     """The parts of a CAD file; `version` is when it was written, and its length."""
     del version
     from standoff.cad.reading import read_cad
 
-    read = read_cad(path, unit=unit, heal=heal, keep="readable")
+    read = read_cad(path, unit=unit, heal=heal, keep="readable", tolerance=tolerance)
     found = {name: _from_file(name, part.shape, part.pose) for name, part in read.by_name.items()}
     return _Parts(found, read.refusals)
 
