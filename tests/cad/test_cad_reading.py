@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -107,21 +109,68 @@ def test_parts_that_bend_inward_answer_as_solids(tmp_path: Path) -> None:
     np.testing.assert_allclose(apart.distance, 0.5, rtol=1e-9)
 
 
-def test_the_nearer_of_two_rules_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
-    from standoff.cad.measures import nearest
+def test_a_judge_that_is_wrong_refuses_no_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where both of OpenCASCADE's rules are off, a quadrature that tells its error is asked; a face
+    that is wrong is refused all the same."""
+    from standoff.cad import making, measures
 
-    asked: list[bool] = []
+    shape = made.flange()
+    right = so.cad.from_shape(shape)[0].report
+    for name in ("area_of", "volume_of"):
+        own = getattr(measures, name)
+        monkeypatch.setattr(measures, name, partial(_off, own))
+    found = so.cad.from_shape(shape)[0].report
+    assert found.area == right.area
+    assert max(found.area_error, found.volume_error) < 1e-9
+    assert not found.notes
+    own_area = making.face_area
+    monkeypatch.setattr(making, "face_area", lambda *given: 1.00001 * own_area(*given))
+    with pytest.raises(so.cad.CadError, match=r"face 1 \(a \w+ at \(.*: its area is"):
+        so.cad.from_shape(shape)
 
-    def measure(shape: Any, adaptive: bool) -> float:
-        asked.append(adaptive)
-        return -1.0 if adaptive else 1.01
 
-    assert nearest(measure, None, 1.005, 0.01) == 1.01
-    assert asked == [False]
-    monkeypatch.setattr("standoff.cad.measures.area_of", lambda shape: 64.0)
-    monkeypatch.setattr("standoff.cad.measures._divided", lambda shape, most: most)
-    assert nearest(measure, None, 1.001, 1e-6) == 1.0
-    assert asked == [False, False, True, True, True]
+def _off(measure: Callable[..., float], shape: Any, adaptive: bool = False) -> float:
+    return 1.0001 * measure(shape, adaptive)
+
+
+QUADRATURES = ("flange", "elbow", "cone", "twisted", "hollow", "drilled tube")
+
+
+@pytest.mark.parametrize("name", only(["elbow", "twisted"], QUADRATURES))
+def test_the_quadrature_of_faces(name: str) -> None:
+    from standoff.cad.quadrature import face_integrals
+
+    shape = SHAPES[name][0]()
+    parts = [face_integrals(f, np.array([1.0, 2.0, 3.0])) for f in made.explored(shape, "face")]
+    volume, area = made.measured(shape)
+    assert sum(abs(part.values[0]) for part in parts) == pytest.approx(area, rel=1e-9)
+    assert sum(part.values[1] for part in parts) / 3.0 == pytest.approx(volume, rel=1e-8)
+    assert max(part.error[0] for part in parts) <= 1e-8 * area
+
+
+def test_names_are_those_that_a_person_gave(tmp_path: Path) -> None:
+    """Those of OpenCASCADE are none: the file's takes their place; equal ones are numbered."""
+    path = made.write_assembly(tmp_path / "two rods.step", ("base", "rod", "rod"))
+    assert [part.name for part in so.read_step(path)] == ["base", "rod", "rod (2)"]
+    path = made.write_assembly(tmp_path / "unnamed.step", ("=>[0:1:1:3]", "rod", "rod (2)"))
+    names = [part.name for part in so.read_step(path)]
+    assert names[1:] == ["rod", "rod (2)"]
+    assert "=>" not in names[0]
+    path = made.write_step(made.box(1, 2, 3), tmp_path / "small box.step")
+    assert so.read_step(path)[0].name == "small box"
+
+
+def test_lines_of_opencascade_are_not_printed(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    path = made.write_step(made.box(1, 2, 3), tmp_path / "box.step")
+    text = path.read_text().replace("DATA;", "DATA;\n#99999=CARTESIAN_POINT('',((0.,0.,0.));", 1)
+    path.write_text(text)
+    capfd.readouterr()
+    with suppress(so.cad.CadError):
+        so.read_step(path)
+    printed = capfd.readouterr()
+    assert "ERR" not in printed.out + printed.err
 
 
 def test_inches_are_converted_and_told(tmp_path: Path) -> None:

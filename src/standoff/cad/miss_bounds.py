@@ -26,10 +26,11 @@ from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-# Spans of an edge at first, and how often they are halved at most.
+# Spans of an edge at first, how often they are halved at most, and how many are open at most.
 EPS = float(np.finfo(np.float64).eps)
 FIRST_SPANS = 32
 MOST_HALVINGS = 14
+MOST_OPEN = 2048
 
 
 def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> float:
@@ -92,7 +93,7 @@ def _interval_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float)
         rest = np.where(np.isnan(rest), np.inf, rest)
         allowed = max(BOUND_FLOOR * size, BOUND_SHARE * max(float(at.max()), proven))
         open_ = rest > allowed
-        if halving == MOST_HALVINGS:
+        if halving == MOST_HALVINGS or open_.sum() > MOST_OPEN:
             open_[:] = False
         proven = max(proven, float((at + rest)[~open_].max(initial=0.0)))
         if not open_.any():

@@ -224,19 +224,23 @@ def _deepest(solid: SolidModel, group: OwnPairs, rows: Array) -> dict[Key, SelfI
     if not len(hits):
         return places
     pair = PlacedPair(solid, solid, Pose.identity(), Pose.identity())
+    common = MEETING * solid.size
     for k in hits:
         leaves = group.leaves[k]
         first = np.array([rows[k, 1], *leaves, *rows[k, 2:], 0.0])
         place = _place(solid, first)
+        apart = place.gap > common
+        # how deep they cross is known where both have a point: these may only be beside each other
+        place = place._replace(depth=0.0) if apart else place
         key = place.feature_a.index, place.feature_b.index
         known = places.get(key)
         if known is None or known.depth < place.depth:
             places[key] = place
-        # where Newton's method ended at the rim of a face: other points of the same leaves
-        if places[key].depth == 0.0 and len(group.joint) == 0:
-            for start in starts(pair, first):
+        # and where Newton's method ended at the rim of a face: other points of the same leaves
+        if places[key].depth == 0.0 and (apart or len(group.joint) == 0):
+            for start in (first[3:7], *starts(pair, first)):
                 row = pair.found_from(first, start)
-                if row is not None and row[0] <= MEETING * solid.size:
+                if row is not None and row[0] <= common:
                     other = _place(solid, row)
                     if other.depth > places[key].depth:
                         places[key] = other
