@@ -10,8 +10,8 @@ import numpy as np
 from standoff.cad.measures import area_of
 from standoff.cad.opencascade import forward, frame_of
 from standoff.cad.surfaces import IDENTITY, Carrier
-from standoff.cad.tolerances import FITTED_TRIM, SPHERE_DEPTH
-from standoff.cad.trims import fit
+from standoff.cad.tolerances import SPHERE_DEPTH
+from standoff.cad.trims import fit, near_enough
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.quadrics import Sphere, sphere_atlas
@@ -40,13 +40,14 @@ def sphere_charts(
         return np.asarray(y[:, :2] / y[:, 2:])
 
     on = Carrier("sphere", chart, IDENTITY, inverse)
-    flat = (ConicArc, Line)
-    return (chart,), [
-        None
-        if isinstance(c, flat)
-        else fit(c, on, lambda ts, c=c: inverse(c.points(ts)), None, FITTED_TRIM * size)
-        for c in curves
-    ]
+
+    def fitted(curve: Curve) -> Pcurve:
+        def places(ts: Array) -> Array:
+            return inverse(curve.points(ts))
+
+        return fit(curve, on, places, None, near_enough(curve, chart, places, size))
+
+    return (chart,), [None if isinstance(c, ConicArc | Line) else fitted(c) for c in curves]
 
 
 def sphere_by_angles(geometry: Any, over: tuple[float, ...]) -> Carrier:

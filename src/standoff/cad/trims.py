@@ -50,8 +50,10 @@ from standoff.kernels.entries.queries import surface_jets
 
 Inverse = Callable[[Array], Array]
 
-# How often the spans of a fitted trimming curve are halved at most.
-FIT_HALVINGS = 12
+# How often the spans of a fitted trimming curve are halved at most, and how many are halved.
+FIT_HALVINGS, MOST_SPANS = 12, 64
+# With more spans than this, a spline is smooth at its knots.
+FEW_SPANS = 5
 # A trimming curve is near enough at this many times its edge's own distance from the surface.
 NEAR_ENOUGH = 1.5
 # Points of each span at which a trimming curve is compared with its edge.
@@ -111,7 +113,7 @@ def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcur
         assert found is not None
         return found, "file"
     inverse = _inverse(on, curve, found)
-    enough = NEAR_ENOUGH * off_surface(curve, surface, inverse) + FITTED_TRIM * size
+    enough = near_enough(curve, surface, inverse, size)
     if found is not None and missed <= enough:
         return found, "file"
     try:
@@ -180,11 +182,12 @@ def _limits(on: Carrier) -> tuple[Array, Array]:
     return np.where(on.angles, -np.inf, low), np.where(on.angles, np.inf, high)
 
 
-def off_surface(curve: Curve, surface: Surface, inverse: Inverse) -> float:
-    """How far a curve is from a surface at samples, length: no trimming curve is nearer."""
+def near_enough(curve: Curve, surface: Surface, inverse: Inverse, size: float) -> float:
+    """What a trimming curve may miss its edge by at samples, length: little more than the edge is
+    from the surface, as none is nearer."""
     ts = np.linspace(curve.first, curve.last, COMPARED)
-    off = curve.points(ts) - surface.points(inverse(ts))
-    return float(np.linalg.norm(off, axis=1).max())
+    off = np.linalg.norm(curve.points(ts) - surface.points(inverse(ts)), axis=1)
+    return NEAR_ENOUGH * float(off.max()) + FITTED_TRIM * size
 
 
 def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
@@ -293,7 +296,8 @@ def fit(
     curve: Curve, on: Carrier, inverse: Inverse, near: Array | None, enough: float
 ) -> NurbsPcurve:
     """A polynomial trimming curve through the parameters of a curve's points: over the whole, then
-    over the curve's own spans, of which those are halved that are not near enough, length."""
+    between the places where they are not smooth; spans are halved that are not near enough,
+    length."""
 
     def places(ts: Array) -> Array:
         uv = inverse(ts)
@@ -313,10 +317,10 @@ def fit(
         found = _fitted(places, breaks, on, near)
         ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(breaks)])
         off = misses(found, curve, on.surface, ts).reshape(-1, COMPARED).max(axis=1)
-        if halving == FIT_HALVINGS or off.max() <= enough:
+        if halving == FIT_HALVINGS or len(breaks) > MOST_SPANS or off.max() <= enough:
             break
         if halving == 0 and (crossed := _crossed(places, curve, on.surface)):
-            breaks = np.unique([*curve.spans(), *crossed])
+            breaks = np.unique([*breaks, *crossed])
         else:
             middles = 0.5 * (breaks[1:] + breaks[:-1])[off > enough]
             breaks = np.sort(np.concatenate([breaks, middles]))
@@ -324,11 +328,12 @@ def fit(
 
 
 def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
-    """Where a curve's parameters are not smooth: at its own knots, and where it crosses those of a
-    surface."""
+    """Where a curve's parameters are not smooth: at its own knots if they are few, as with many it
+    is smooth enough, and where it crosses those of a surface."""
     ts = np.unique([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
     near = SAME_KNOT * (curve.last - curve.first)
-    found = curve.spans()[1:-1].tolist()
+    own = curve.spans()
+    found = own[1:-1].tolist() if len(own) <= FEW_SPANS else []
     uv = places(ts)
     for k, levels in enumerate(surface.analytic_breaks()):
         for level in np.asarray(levels).tolist():
