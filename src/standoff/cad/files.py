@@ -32,8 +32,8 @@ STATED = re.compile(
 UNIT = re.compile(
     rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.|CONVERSION_BASED_UNIT\s*\(\s*'(\w+)'"
 )
-PREFIXES = {"": 1.0, "MILLI": 1e-3, "CENTI": 1e-2, "DECI": 0.1, "MICRO": 1e-6, "KILO": 1e3}
-UNITS_BY_NAME = {"INCH": 0.0254, "INCHES": 0.0254, "FOOT": 0.3048, "MILLIMETRE": 1e-3}
+PREFIXES = {"": 1.0, "MILLI": 0.001, "CENTI": 0.01, "DECI": 0.1, "MICRO": 0.000001, "KILO": 1e3}
+UNITS_BY_NAME = {"INCH": 0.0254, "INCHES": 0.0254, "FOOT": 0.3048, "MILLIMETRE": 0.001}
 """Of units of length, in metres."""
 STEP_START = b"ISO-10303-21"
 STEP_END = b"END-ISO-10303-21"

@@ -227,7 +227,7 @@ def grown(on: Carrier, low: Array, high: Array) -> Carrier:
         net[rows] = np.tensordot(matrix, net[rows], 1)
         knots[axis][rows] = b + share * (b - a) if last else a - share * (b - a)
         net = np.moveaxis(net, 0, axis)
-        made = NurbsSurface(net[..., :3] / net[..., 3:], *knots, net[..., 3])
+        made = NurbsSurface(net[..., :3] / net[..., 3:], knots[0], knots[1], net[..., 3])
     return replace(on, surface=made)
 
 

@@ -16,7 +16,7 @@ KEPT_TRIM: Final = 2e-8
 """Fraction of the part's size by which a file's trimming curve may miss its edge and still be taken
 as it is, on surfaces where a nearer one has to be searched for and has more spans."""
 
-LEAST_ANGLE: Final = 1e-14
+SAME_TANGENTS: Final = 1e-14
 """Squared sine of the angle between a surface's tangents below which they are parallel: a collapsed
 side, or roundoff."""
 

@@ -33,7 +33,7 @@ from standoff.cad.tolerances import (
     CONSTANT,
     FITTED_TRIM,
     KEPT_TRIM,
-    LEAST_ANGLE,
+    SAME_TANGENTS,
     SAME_KNOT,
 )
 from standoff.errors import StandoffError
@@ -154,7 +154,7 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
         metric = [np.sum(a * b, axis=1) for a, b in ((xu, xu), (xu, xv), (xv, xv))]
         slopes = [np.sum(a * away, axis=1) for a in (xu, xv)]
         area = metric[0] * metric[2] - metric[1] ** 2
-        area = np.where(area > LEAST_ANGLE * metric[0] * metric[2], area, np.inf)
+        area = np.where(area > SAME_TANGENTS * metric[0] * metric[2], area, np.inf)
         step = [
             (metric[2] * slopes[0] - metric[1] * slopes[1]) / area,
             (metric[0] * slopes[1] - metric[1] * slopes[0]) / area,
@@ -299,14 +299,16 @@ def fit(
     between the places where they are not smooth; spans are halved that are not near enough,
     length."""
 
+    closed = on.inverse
+
     def places(ts: Array) -> Array:
         uv = inverse(ts)
         for t, way in ((curve.first, 1.0), (curve.last, -1.0)):
-            for row in uv[ts == t] if on.inverse is not None else ():
-                if on.angles[0] and _at_pole(on, row):
+            for row in uv[ts == t]:
+                if closed is not None and on.angles[0] and _at_pole(on, row):
                     # there the angle is that in which the curve leaves
                     beside = curve.point(t) + way * curve.jet(t)[1]
-                    uv[ts == t, 0] = on.inverse(beside[None])[0, 0]
+                    uv[ts == t, 0] = closed(beside[None])[0, 0]
         for k in (0, 1):
             if on.angles[k]:
                 uv[:, k] = np.unwrap(uv[:, k])
