@@ -33,8 +33,8 @@ from standoff.cad.tolerances import (
     CONSTANT,
     FITTED_TRIM,
     KEPT_TRIM,
-    SAME_TANGENTS,
     SAME_KNOT,
+    SAME_TANGENTS,
 )
 from standoff.errors import StandoffError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
