@@ -58,6 +58,8 @@ FEW_SPANS = 5
 NEAR_ENOUGH = 1.5
 # Points of each span at which a trimming curve is compared with its edge.
 COMPARED = 33
+# Points of a trimming curve that tell whether it leaves its surface's domain, by a little.
+EXTENT_POINTS = 513
 # Steps of Newton's method from the file's trimming curve to the nearest points of a surface.
 FEET_STEPS = 12
 
@@ -104,7 +106,7 @@ def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcur
         raise NoExactForm("an edge without a trimming curve on it")
     missed = np.inf if found is None else miss(found, curve, surface)
     if found is not None and on.inverse is None:
-        at = found.places(np.linspace(curve.first, curve.last, COMPARED))
+        at = found.places(np.linspace(curve.first, curve.last, EXTENT_POINTS))
         low, high = _limits(on)
         room = DOMAIN_SPARE * np.where(np.isfinite(high - low), high - low, 0.0)
         inside = np.all((low - room <= at) & (at <= high + room))
@@ -170,7 +172,7 @@ def extent(edges: Sequence[tuple[Converted, Any]]) -> tuple[Array, Array]:
         coordinates(flat.Value(t))
         for edge, flat in edges
         if flat is not None and edge.affine
-        for t in edge.own(np.linspace(edge.curve.first, edge.curve.last, COMPARED)).tolist()
+        for t in edge.own(np.linspace(edge.curve.first, edge.curve.last, EXTENT_POINTS)).tolist()
     ]
     uv = np.reshape(rows, (-1, 2))
     return uv.min(axis=0, initial=np.inf), uv.max(axis=0, initial=-np.inf)
