@@ -21,7 +21,7 @@ from standoff.cad.seams import once
 from standoff.cad.sphere_faces import sphere_by_angles, sphere_charts, sphere_sense
 from standoff.cad.surfaces import Carrier, basis_surface, carrier, grown
 from standoff.cad.tolerances import MISSED_POLE
-from standoff.cad.trims import extent, trim
+from standoff.cad.trims import extent, limits_of, trim
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.pcurves import Pcurve
@@ -221,6 +221,7 @@ class _Maker:
         flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
         first, last = BRep_Tool.Range_s(edge, face)
         ends = on.own(np.array([coordinates(flat.Value(t)) for t in (first, last)]))
+        ends = np.clip(ends, *limits_of(on))
         middle = on.own(0.5 * np.array([[over[0] + over[1], over[2] + over[3]]]))[0]
         across = int(abs(ends[1, 1] - ends[0, 1]) < abs(ends[1, 0] - ends[0, 0]))
         level = float(ends[:, across].mean())

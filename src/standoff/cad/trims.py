@@ -107,7 +107,7 @@ def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcur
     missed = np.inf if found is None else miss(found, curve, surface)
     if found is not None and on.inverse is None:
         at = found.places(np.linspace(curve.first, curve.last, EXTENT_POINTS))
-        low, high = _limits(on)
+        low, high = limits_of(on)
         room = DOMAIN_SPARE * np.where(np.isfinite(high - low), high - low, 0.0)
         inside = np.all((low - room <= at) & (at <= high + room))
         missed = missed if inside else np.inf
@@ -143,7 +143,7 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
     """Parameters (n, 2) of points' feet on a surface, within its domain; from parameters near them
     by Newton's method. Where it gets no nearer, they stay."""
     surface = on.surface
-    low, high = _limits(on)
+    low, high = limits_of(on)
     at, best = np.clip(near, low, high), near
     least = np.full(len(points), np.inf)
     for _ in range(FEET_STEPS):
@@ -178,7 +178,7 @@ def extent(edges: Sequence[tuple[Converted, Any]]) -> tuple[Array, Array]:
     return uv.min(axis=0, initial=np.inf), uv.max(axis=0, initial=-np.inf)
 
 
-def _limits(on: Carrier) -> tuple[Array, Array]:
+def limits_of(on: Carrier) -> tuple[Array, Array]:
     """(lowest, highest) parameters of a surface's domain; an angle has none."""
     low, high = np.reshape(on.surface.domain, (2, 2)).T
     return np.where(on.angles, -np.inf, low), np.where(on.angles, np.inf, high)
@@ -369,7 +369,7 @@ def _fitted(
     if near is not None:
         turns = FULL_TURN * np.round((near - points[len(points) // 2]) / FULL_TURN)
         points = points + np.where(on.angles, turns, 0.0)
-    points = np.clip(points, *_limits(on))  # the curve stays within the hull of its points
+    points = np.clip(points, *limits_of(on))  # the curve stays within the hull of its points
     return NurbsPcurve(straightened(points), knots)
 
 
