@@ -30,7 +30,7 @@ from standoff_studies.soak.solid_outlines import Array
 
 AGREED = 1e-6
 """Length, of parts of about 1: OpenCASCADE's own tolerance is 1e-7, and it may add up."""
-POINTS, DISTANCES = 100, 10
+POINTS, BY_VERTICES, DISTANCES = 100, 40, 10
 """Of each part."""
 BOXES = 12
 """Small ones, from which distances are asked."""
@@ -264,6 +264,17 @@ def judge_distances(
             yield f"box {sides.tolist()} at {place.tolist()}: {own!r}, by OpenCASCADE {true!r}"
 
 
+def by_vertices(solid: Any, rng: np.random.Generator) -> Array:
+    """Points (n, 3) about vertices, whose sides the faces' corners there decide."""
+    vertices = np.array(solid.boundary.vertex_points).reshape(-1, 3)
+    if not len(vertices):
+        return vertices
+    ways = rng.normal(size=(BY_VERTICES, 3))
+    ways *= solid.size * 10.0 ** rng.uniform(-4.0, -0.5, (BY_VERTICES, 1))
+    near: Array = vertices[rng.integers(len(vertices), size=BY_VERTICES)] + ways
+    return near
+
+
 def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
     """One part with its points and distances."""
     rng = np.random.default_rng([seed, number, 3])
@@ -279,6 +290,7 @@ def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
         points = middle + 1.3 * half * rng.uniform(-1.0, 1.0, (POINTS, 3))
         lines = [*judge_points(shape, solid, points, seen)]
         lines += judge_distances(shape, solid, rng, seen)
+        lines += judge_points(shape, solid, by_vertices(solid, rng), seen)
     except StandoffError as error:
         reason = re.sub(r"^.*refused\. ", "", str(error))
         seen.refused[re.sub(r"-?\d[\d.e+-]*", "#", reason)[:120]] += 1
