@@ -329,7 +329,7 @@ def _draw_rings(axes: Axes, kind: str, rings: dict[tuple[str, str], Arrived]) ->
     axes.barh(
         range(len(rows)), other, 0.7, left=least, color=style.ORANGE, hatch="////", linewidth=0.0
     )
-    axes.set_title(kind)
+    axes.set_title(kind.replace(" and", "\nand"))
     axes.set(xlabel="part [–]", xlim=(0.0, 1.0), xticks=(0.0, 0.5, 1.0))
     axes.grid(visible=False, axis="y")
     axes.set_axisbelow(True)
