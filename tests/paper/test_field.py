@@ -118,13 +118,14 @@ def test_a_method_finds_the_certified_points(key: str, pair_key: str) -> None:
 
 def test_ellipsoids_by_resultants(rng: np.random.Generator) -> None:
     """The closest points of two ellipsoids are those of a certified query."""
-    axes, turn, way = rng.uniform(0.5, 1.5, (2, 3)), rng.normal(size=3), rng.normal(size=3)
-    pose = so.Pose.exp(tuple(turn), tuple(4.0 * way / np.linalg.norm(way)))
-    a, b = (np.diag(each**-2.0) for each in axes)
-    rotation = pose.rotation
-    points = algebra.two_ellipsoids(a, rotation @ b @ rotation.T, pose.translation)
-    due = so.distance(*(so.shapes.ellipsoid(*each) for each in axes), so.Pose.identity(), pose)
-    np.testing.assert_allclose(points, [due.point_a, due.point_b], atol=1e-9)
+    for _ in range(8):
+        axes, turn, way = rng.uniform(0.5, 1.5, (2, 3)), rng.normal(size=3), rng.normal(size=3)
+        pose = so.Pose.exp(tuple(turn), tuple(4.0 * way / np.linalg.norm(way)))
+        a, b = (np.diag(each**-2.0) for each in axes)
+        rotation = pose.rotation
+        points = algebra.two_ellipsoids(a, rotation @ b @ rotation.T, pose.translation)
+        due = so.distance(*(so.shapes.ellipsoid(*each) for each in axes), so.Pose.identity(), pose)
+        np.testing.assert_allclose(points, [due.point_a, due.point_b], atol=1e-9)
 
 
 def test_every_kind_of_place_is_a_spot() -> None:

@@ -107,10 +107,10 @@ def artwork(rows: Rows) -> Artwork:
         text=(
             "Two diagrams. Above, from left to right: tangent planes, V-Clip, the library's frame, "
             "the paper's law and two Newton steps, Newton to its end, resultants, GJK, and far to "
-            "the right interval Newton. "
-            "V-Clip's errors are the greatest, at a hundredth; the law's are about a millionth, "
-            "all others' far smaller. Below, V-Clip, GJK and the library's frame arrive from all "
-            "starts, the paper's law and Newton from fewer, of two lenses from few."
+            "the right interval Newton. V-Clip's errors are the greatest, at a hundredth; the "
+            "law's go from a millionth to some thousandths, those of two Newton steps nearly as "
+            "far; all others' are far smaller. Below, V-Clip, GJK and the library's frame arrive "
+            "from all starts, the paper's law and Newton from fewer, of two lenses from few."
         ),
         draw=lambda: draw(rows),
         tables={"field": table(rows)},
@@ -273,7 +273,7 @@ def _own(rows: Rows) -> tuple[Statement, ...]:
             "The field",
             f"frames that failed, that is, gave up or are off by more than {WRONG:g} length: "
             f"{failed}",
-            f"interval Newton gives up after {MOST_BOXES} pairs of boxes",
+            f"interval Newton gives up after {MOST_BOXES} pairs of boxes: its failures are those",
         ),
         own_statement(
             "The field",

@@ -122,13 +122,13 @@ DURATIONS = {"A point": 3.1, "B": 1.5, "C": 12.0, "D patches": 5.34, "E patches"
 
 def simulation(key: str, evenly: int, switches: int, frames: int, starts: int) -> Work:
     """Return a simulation's work: stretches evenly over its motion, and one about each of its
-    first switches, at most so many."""
+    first switches, at most so many, which is in the middle of a frame."""
     one, duration = pair(key), DURATIONS[key]
     last = duration - (frames + 1) * STEP
     even = np.linspace(0.0, last, evenly).tolist()
     run = track(Tracker(one.a, one.b, duration / LOOKS), REST, one.path, duration)
     seen = [event.time for event in run.events[:switches]]
-    about = [min(max(t - 0.5 * frames * STEP, 0.0), last) for t in seen]
+    about = [min(max(t - 0.5 * (frames + 1) * STEP, 0.0), last) for t in seen]
     return Work(key[0], one, (*even, *about), frames, starts)
 
 
