@@ -296,6 +296,13 @@ def _own(rows: Rows) -> tuple[Statement, ...]:
             "they are not in its cost: the paper reads them from Voronoi regions that were "
             "computed before",
         ),
+        *_of_resultants(),
+    )
+
+
+def _of_resultants() -> tuple[Statement, ...]:
+    """Of two faces: not of two biquadratic ones, but of the lowest degree."""
+    return (
         own_statement(
             "The field",
             f"two biquadratic faces have {roots_of_two_faces(2, 2)} common roots of Eqs. (1)-(4), "
