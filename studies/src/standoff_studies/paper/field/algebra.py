@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from itertools import permutations, product
 from math import comb
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import eig
 from scipy.signal import convolve2d
 
@@ -121,11 +123,11 @@ def _resultant_roots(p: Array, q: Array) -> list[float]:
     return _in_unit(_real(_eigenvalues(p, q)))
 
 
-def _real(values: Array) -> Array:
+def _real(values: NDArray[Any]) -> Array:
     return np.asarray(values[np.abs(values.imag) < REAL].real)
 
 
-def _eigenvalues(p: Array, q: Array) -> Array:
+def _eigenvalues(p: Array, q: Array) -> NDArray[Any]:
     """Those of the companion matrix of Sylvester's matrix in v, which are finite."""
     m, n = p.shape[1] - 1, q.shape[1] - 1
     degree = max(p.shape[0], q.shape[0]) - 1
@@ -223,16 +225,16 @@ def two_ellipsoids(a: Array, b: Array, c: Array) -> Array:
     """
     degree = 6
 
-    def at(s: complex, t: complex) -> tuple[complex, Array, Array]:
+    def at(s: complex, t: complex) -> tuple[Any, NDArray[Any], NDArray[Any]]:
         """The determinant, and x and z times it."""
         matrix = t * a + s * b + b @ a
         below = np.linalg.det(matrix)
         x = below * np.linalg.solve(matrix, b @ c)
         return below, s * x, -t * np.linalg.solve(b, a @ x)
 
-    def errors(s: complex, t: complex) -> Array:
+    def errors(s: complex, t: complex) -> NDArray[Any]:
         below, x, z = at(s, t)
-        return np.array([x @ a @ x, z @ b @ z]) - below**2
+        return np.array([x @ a @ x - below**2, z @ b @ z - below**2])
 
     unit = np.exp(2j * np.pi * np.arange(degree + 1) / (degree + 1))
     values = np.array([[errors(s, t) for t in unit] for s in unit])

@@ -326,7 +326,8 @@ def of_ellipsoids() -> tuple[float, float]:
     rng, found = np.random.default_rng(SEED), []
     for number in range(ELLIPSOIDS):
         axes = rng.uniform(*STRETCHED, (2, 3))
-        one = set_apart(f"ellipsoids {number}", *(shapes.ellipsoid(*each) for each in axes), rng)
+        bodies = shapes.ellipsoid(*axes[0]), shapes.ellipsoid(*axes[1])
+        one = set_apart(f"ellipsoids {number}", *bodies, rng)
         pose = one.path.pose(0.0)
         turn, (a, b) = pose.rotation, (np.diag(each**-2.0) for each in axes)
         points = two_ellipsoids(a, turn @ b @ turn.T, pose.translation)
