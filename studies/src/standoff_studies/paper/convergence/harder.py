@@ -255,13 +255,13 @@ def _of_rings(rings: dict[tuple[str, str], Arrived]) -> tuple[Statement, ...]:
         Statement(
             SECTION,
             "-",
-            "a point in a hollow ring, whose wall bends inwards both ways on half of it: "
+            "of a point in a hollow ring, whose wall bends inwards both ways on half of it, these "
+            "starts come to the only minimum: "
             + "; ".join(
                 f"{law} {rings[HOLLOW, law].at_least} of {rings[HOLLOW, law].tried}" for law in rows
             ),
             all(rings[HOLLOW, law].at_least == rings[HOLLOW, law].tried for law in DESCENDING),
-            f"come to the only minimum; the verdict is on {' and '.join(DESCENDING)}",
-            by,
+            by=by,
         ),
         Statement(
             SECTION,
