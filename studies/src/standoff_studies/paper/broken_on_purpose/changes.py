@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import replace
 from functools import cache, partial
+from importlib import import_module
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 from unittest.mock import patch
@@ -34,6 +35,7 @@ from standoff_studies.paper import (
 from standoff_studies.paper.broken_on_purpose import pages
 from standoff_studies.paper.broken_on_purpose.breaks import BREAKS, PAPER, broken
 from standoff_studies.paper.broken_on_purpose.matrix import FIGURES, statements_of
+from standoff_studies.paper.catalogue import chosen
 from standoff_studies.paper.control import gains, levels, roots
 from standoff_studies.paper.convergence import cells, harder, rings
 from standoff_studies.paper.convergence import figures as arrivals
@@ -44,6 +46,7 @@ from standoff_studies.paper.field import methods, newton, rows, support
 from standoff_studies.paper.field.work import Work
 from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.in_the_loop import run as loop
+from standoff_studies.paper.in_the_loop import statements as loop_said
 from standoff_studies.paper.nonconvex_bore import in_bore
 from standoff_studies.paper.promises import OF_A_PAGE, PROMISES, Shown
 from standoff_studies.paper.realisations import run as realisations
@@ -79,14 +82,25 @@ def made_again() -> Iterator[None]:
         yield
 
 
-def replacing(*where: Any) -> Within:
+def setting(*where: Any) -> Within:
     """A change of one attribute after the other: its owner, its name, its replacement."""
 
     @contextmanager
     def within() -> Iterator[None]:
-        with made_again(), ExitStack() as stack:
+        with ExitStack() as stack:
             for owner, name, by in zip(where[::3], where[1::3], where[2::3], strict=True):
                 stack.enter_context(patch.object(owner, name, by))
+            yield
+
+    return within
+
+
+def replacing(*where: Any) -> Within:
+    """The same, within which all runs are made again."""
+
+    @contextmanager
+    def within() -> Iterator[None]:
+        with made_again(), setting(*where)():
             yield
 
     return within
@@ -310,8 +324,10 @@ def a_tick_late(made: Any) -> Any:
     return np.append(found[:1], found[:-1])
 
 
-STIFFER = replace(loop.CONTACT, stiffness=3.0 * loop.CONTACT.stiffness)
-"""A contact that pushes thrice as hard as the statement's."""
+SOFTER = replace(loop.CONTACT, stiffness=0.25 * loop.CONTACT.stiffness)
+"""A contact whose stiffness explains a quarter of the forces."""
+OVER_A_FACE = ((5.0, 25.0), (15.0, 25.0))
+"""The first half of a hand's way over one face [degrees]."""
 
 
 # Two figures show studies that were run before. Their changes act on a share that is run anew, with
@@ -403,7 +419,10 @@ CHANGES: dict[tuple[str, str], Within] = {
     ("4", "Euler's method, gain halved"): replacing(realisations, "Tracker", OTHERWISE),
     ("5", "distances a tick late"): replacing(loop, "exact_distances", a_tick_late),
     ("5", "300 steps in a tick"): replacing(loop, "_microseconds", many_ticks),
-    ("5", "a contact thrice as stiff"): replacing(loop, "CONTACT", STIFFER),
+    ("5", "a hand over one face"): replacing(
+        loop, "WAY", OVER_A_FACE, loop, "WAY_DOWN", ((20.0, 25.0), (30.0, 25.0))
+    ),
+    ("5", "a quarter of the stiffness"): replacing(loop_said, "CONTACT", SOFTER),
     ("7", "K h = 1.9, another start"): replacing(
         *(run_a, "Tracker", following(near_the_limit), gains_a, "START", (0.3, 0.4)),
         *(gains_a, "try_all", lambda at, k, frames: TRY(at, 0.0 * k + 1900.0, frames)),
@@ -453,31 +472,31 @@ CHANGES: dict[tuple[str, str], Within] = {
     ),
     ("field", "a law that lags"): of_the_law(lambda law: replace(law, gain=2.0, feedforward=False)),
     ("field", "a GJK that gives up"): of_a_method("gjk", given_up),
-    ("../automaton.md", "a tracker that asks regions"): replacing(so, "Tracker", pages.Asking),
-    ("../automaton.md", "a lens for the ellipsoid"): replacing(
+    ("../automaton.md", "a tracker that asks regions"): setting(so, "Tracker", pages.Asking),
+    ("../automaton.md", "a lens for the ellipsoid"): setting(
         so.shapes, "ellipsoid", lambda *axes: so.shapes.lens(1.0, 0.45)
     ),
     ("../automaton.md", "minima asked up to 0.3 length"): edited("minima=0.75", "minima=0.3"),
-    ("../benchmarks.md", "exact bodies for the hulls"): replacing(pages, "FELT", pages.exact),
-    ("../certificate.md", "one face turned"): replacing(pages, "TILT", 0.1),
+    ("../benchmarks.md", "exact bodies for the hulls"): setting(pages, "FELT", pages.exact),
+    ("../certificate.md", "one face turned"): setting(pages, "TILT", 0.1),
     ("../convexity.md", "a patch that bulges"): edited("-= sign * sag", "+= sign * sag"),
-    ("../laws.md", "gain halved"): replacing(so, "Tracker", HALVED),
-    ("../pair-system.md", "b for rotation only"): replacing(system, "feedforward", turning_only),
-    ("../pair-system.md", "first fundamental forms for H"): replacing(
+    ("../laws.md", "gain halved"): setting(so, "Tracker", HALVED),
+    ("../pair-system.md", "b for rotation only"): setting(system, "feedforward", turning_only),
+    ("../pair-system.md", "first fundamental forms for H"): setting(
         so.tracking, "pair_system", first_forms
     ),
-    ("../pair-system.md", "missing parameters not held"): replacing(system, "hessian", unmasked),
-    ("../penetration.md", "depth='local'"): replacing(pages, "DEPTH", "local"),
-    ("../penetration.md", "distances without a sign"): replacing(so, "distance", unsigned),
-    ("../servo-loop.md", "1000 steps in a tick"): replacing(pages, "STEPS", 1000),
+    ("../pair-system.md", "missing parameters not held"): setting(system, "hessian", unmasked),
+    ("../penetration.md", "depth='local'"): setting(pages, "DEPTH", "local"),
+    ("../penetration.md", "distances without a sign"): setting(so, "distance", unsigned),
+    ("../servo-loop.md", "1000 steps in a tick"): setting(pages, "STEPS", 1000),
     ("../solids.md", "a swing fifty times as fast"): edited("0.2, 101)", "0.2, 3)"),
-    ("../solids.md", "bounds ten frames late"): replacing(pages, "LATE", 10),
-    ("../solids.md", "minima asked up to 1 length"): replacing(pages, "REACH", 1.0),
+    ("../solids.md", "bounds ten frames late"): setting(pages, "LATE", 10),
+    ("../solids.md", "minima asked up to 1 length"): setting(pages, "REACH", 1.0),
     ("../surfaces.md", "no weights"): edited(
         "patches[0].jet", "type(patches[0])(patches[0].control_points).jet"
     ),
     ("../surfaces.md", "the pole outside"): edited("1/(u - 0.3)", "1/(u + 0.3)"),
-    ("definite.md", "first fundamental forms for H"): replacing(
+    ("definite.md", "first fundamental forms for H"): setting(
         so.tracking, "pair_system", first_forms
     ),
     ("definite.md", "the second form left out"): edited("F.T @ F + second @ dR", "F.T @ F"),
@@ -511,8 +530,9 @@ def quoted(key: str, by: str = "") -> tuple[Shown, ...]:
 
 def turned_by(key: str, by: str) -> Turned:
     """Make a change and return which quotations that name it are turned."""
-    own = quoted(key, by)
-    within = CHANGES[key, by]
+    own, within = quoted(key, by), CHANGES[key, by]
+    for entry in chosen([key]) if not key.endswith(OF_A_PAGE) else ():
+        import_module(entry.module)  # what is imported within would keep the runs made there
     if key.endswith(OF_A_PAGE):
         with within():
             turned = {one for one in own if not pages.holds(key, one.number)}
