@@ -336,6 +336,7 @@ OVER_A_FACE = ((5.0, 25.0), (15.0, 25.0))
 # the law as it is and changed, and turn a verdict if it differs between these two.
 
 FEW_STARTS = 4
+RING = "ring and point"
 TURNED, SHARPENED = {30.0: ("turning 0, 30",)}, {1000.0: ("sharp 2, 1000",)}
 
 
@@ -354,8 +355,7 @@ def few_cells(name: str) -> tuple[Cell, ...]:
 FEW_HARDER = replacing(
     *(harder, "committed", few_cells, harder, "TURNING", TURNED, harder, "SHARP", SHARPENED),
     *(harder, "RATES", tuple(TURNED), harder, "RATIOS", tuple(SHARPENED)),
-    *(harder, "KINDS", {"linked rings": rings.KINDS["linked rings"]}),
-    *(rings, "KINDS", {"linked rings": rings.KINDS["linked rings"]}),
+    *(harder, "KINDS", {RING: rings.KINDS[RING]}, rings, "KINDS", {RING: rings.KINDS[RING]}),
 )
 
 EXCHANGED = {
@@ -550,27 +550,28 @@ def turned_by(key: str, by: str) -> Turned:
 
 
 @cache
-def _in_share(key: str) -> tuple[tuple[Statement, Statement], ...]:
-    """A figure's statements as stored, and in the share that is run anew with the law as it is."""
-    stored = statements_of(key)
+def _in_share(key: str) -> tuple[Statement, ...]:
+    """A figure's statements in the share that is run anew, with the law as it is."""
     with SHARES[key]():
-        return tuple(zip(stored, statements_of(key), strict=True))
+        return statements_of(key)
 
 
 def _turned_in_share(key: str, own: Iterable[Shown], within: Within) -> set[Shown]:
-    """Of a study that was run before: what is otherwise in a share of it, as it is and changed."""
-    pairs, turned = _in_share(key), set()
+    """Of a study that was run before: whose verdict is another in a share of it, changed, and of a
+    measurement of our own what is another number."""
+    known, turned = _in_share(key), set()
     with SHARES[key](), within():
         changed = statements_of(key)
     for one in own:
-        ((now, then),) = (
-            (each, other)
-            for (stored, each), other in zip(pairs, changed, strict=True)
-            if one.is_of(stored)
-        )
+        # without words of the paper, by its number in what is stored
+        there = [one.words in x.stated for x in known]
+        if not one.words:
+            there = [one.is_of(x) for x in statements_of(key)]
+        now, then = known[there.index(True)], changed[there.index(True)]
         if Verdict.of(now) is not one.verdict:
             raise AssertionError(f"{one.text}: the share says {now.measured}")
-        if Verdict.of(then) is not one.verdict or then.measured != now.measured:
+        number = one.verdict is Verdict.OWN and then.measured != now.measured
+        if number or Verdict.of(then) is not one.verdict:
             turned.add(one)
     return turned
 
