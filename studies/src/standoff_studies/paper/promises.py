@@ -139,12 +139,13 @@ def _read(row: dict[str, Any]) -> Promise:
 
 def _quoted(sign: str, key: str, number: str, words: str = "") -> Shown:
     """A quotation, with the first change of its figure that names a part of it, or all."""
+    fixed = _FIXED.get(number, "")
     names = (
         name
         for name, parts in _TURNED_BY.get(key, {}).items()
-        if not parts or any(part in number or part in words for part in parts)
+        if not fixed and (not parts or any(part in number or part in words for part in parts))
     )
-    return Shown(_SIGNS[sign], key, number, words, next(names, ""), _FIXED.get(number, ""))
+    return Shown(_SIGNS[sign], key, number, words, next(names, ""), fixed)
 
 
 PROMISES: Mapping[str, tuple[Promise, ...]] = {

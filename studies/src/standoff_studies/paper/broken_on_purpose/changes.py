@@ -181,15 +181,18 @@ LOOSE = so.PaperLaw(gain=20.0)
 """A law that lags, in place of the default, whose frames are certified."""
 
 
-class LooseTracker(Tracker):
-    """A tracker that takes it where no law is given."""
+def defaulting(law: Any) -> type[so.Tracker]:
+    """Trackers that take it where no law is given."""
 
-    def __init__(self, a: Any, b: Any, dt: float = 1e-3, **options: Any) -> None:
-        super().__init__(a, b, dt, **({"law": LOOSE} | options))
+    class Changed(Tracker):
+        def __init__(self, a: Any, b: Any, dt: float = 1e-3, **options: Any) -> None:
+            super().__init__(a, b, dt, **({"law": law} | options))
+
+    return Changed
 
 
 class LoosePoint(PointTracker):
-    """The same of a point."""
+    """A point's tracker that does so."""
 
     def __init__(self, body: Any, dt: float = 1e-3, law: Any = LOOSE) -> None:
         super().__init__(body, dt, law)
@@ -390,13 +393,13 @@ FEW_ROWS = replacing(field, "committed", few_rows)
 SHARES: Mapping[str, Within] = {"harder": FEW_HARDER, "field": FEW_ROWS}
 
 
-def of_the_law(change: Callable[[so.PaperLaw], so.PaperLaw]) -> Within:
-    """The printed law of the field changed."""
+def of_the_law(change: Callable[[so.PaperLaw], so.PaperLaw], step: float = methods.STEP) -> Within:
+    """The printed law of the field changed, and its frame time [s]."""
 
     def law_of(key: str, gain: float = 1.0 / methods.STEP) -> Any:
         return change(LAW(key, gain)) if key == "paper" else LAW(key, gain)
 
-    return replacing(methods, "law_of", law_of)
+    return replacing(methods, "law_of", law_of, methods, "STEP", step)
 
 
 def of_a_method(key: str, step: Callable[..., Any]) -> Within:
@@ -411,110 +414,105 @@ def given_up(*at: Any) -> Any:
 
 
 OTHERWISE, HALVED = following(realised_otherwise), following(gain_halved)
+LAGGING = replacing(pair_simulation, "Tracker", defaulting(LOOSE))
 UNFED = following(without_feedforward)
-CHANGES: dict[tuple[str, str], Within] = (
-    {
-        ("1", "tangents twice as long"): replacing(
-            patches, "curved_face", lambda: Stretched(patches._control_points())
-        ),
-        ("2", "a place beside the foot"): replacing(patches, "_answer", beside_the_foot),
-        ("3", "Euler's method"): replacing(realisations, "Tracker", OTHERWISE),
-        ("4", "Euler's method, gain halved"): replacing(realisations, "Tracker", OTHERWISE),
-        ("5", "distances a tick late"): replacing(loop, "exact_distances", a_tick_late),
-        ("5", "300 steps in a tick"): replacing(loop, "_microseconds", many_ticks),
-        ("5", "a hand over one face"): replacing(
-            loop, "WAY", OVER_A_FACE, loop, "WAY_DOWN", ((20.0, 25.0), (30.0, 25.0))
-        ),
-        ("5", "a quarter of the stiffness"): replacing(loop_said, "CONTACT", SOFTER),
-        ("7", "K h = 1.9, another start"): replacing(
-            *(run_a, "Tracker", following(near_the_limit), gains_a, "START", (0.3, 0.4)),
-            *(gains_a, "try_all", lambda at, k, frames: TRY(at, 0.0 * k + 1900.0, frames)),
-        ),
-        ("8", "a line and a branch left out"): replacing(regions_b, "run", without_a_line),
-        ("10", "the default law lags"): replacing(run_b, "PointTracker", LoosePoint),
-        ("12", "lines that go inwards"): replacing(regions_c, "regions", turned_inwards),
-        ("arrivals", "half as many arrive"): replacing(arrivals, "committed", half_arrived),
-        ("harder", "the printed and the covariant M exchanged"): replacing(
-            cells, "LAWS", EXCHANGED, rings, "RING_LAWS", RINGS_EXCHANGED
-        ),
-        ("voronoi", "the other body's feature"): replacing(
-            voronoi_figure, "distance", of_another_feature
-        ),
-        ("gains", "gain halved, all limits 2"): replacing(
-            so, "Tracker", HALVED, gains, "stability_limit", lambda name: 2.0
-        ),
-        ("lower", "an error that can be kept"): replacing(lower, "OUTRUN", lower.KEPT),
-        ("lower", "half of the least gain"): replacing(so, "min_gain", half_the_least),
-        ("lower", "gain halved"): replacing(so, "Tracker", HALVED),
-        ("stability", "Euler's roots for all"): replacing(roots, "sampled_roots", by_euler),
-        ("feedback", "gain halved"): replacing(so, "Tracker", HALVED),
-        ("basin", "K h = 1.5"): replacing(so, "Tracker", following(long_steps)),
-        ("lyapunov", "20 frames, −E for E"): replacing(
-            levels, "FRAMES", 20, levels, "functions", of_other_signs
-        ),
-        ("normals", "a fiftieth of each step"): replacing(normals_study, "advanced", hardly_moved),
-        ("nonconvex", "no feedforward"): replacing(nonconvex_runs, "Tracker", UNFED),
-        ("nonconvex", "one branch answers"): replacing(nonconvex, "run", one_branch),
-        ("nonconvex", "a pin within the evolute"): replacing(
-            nonconvex, "in_bore", lambda: in_bore(0.05)
-        ),
-        ("nonconvex", "minima asked up to 1 length"): replacing(nonconvex_runs, "FAR", 1.0),
-        ("furthest", "no feedforward"): replacing(furthest, "Tracker", UNFED),
-        ("furthest", "first fundamental forms for H"): replacing(
-            furthest, "pair_system", first_forms
-        ),
-        ("furthest", "quick through contact"): replacing(furthest, "SLOW", 0.49),
-        ("variants", "the covariant M, a loose gain"): replacing(
-            so, "Tracker", following(covariant_and_loose)
-        ),
-        ("cost", "half of the law's step"): replacing(update_cost, "law_step", half_a_step),
-        ("verdict", "feedforwards exchanged"): replacing(
-            so, "Tracker", following(otherwise_predicted)
-        ),
-        ("field", "two Newton steps with a test"): of_a_method("blind", newton.newton),
-        ("field", "RK4"): of_the_law(lambda law: replace(law, integrator="rk4")),
-        ("field", "Newton's step for the law's"): of_the_law(
-            lambda law: replace(law, integrator="euler", gain=1.0 / methods.STEP)
-        ),
-        ("field", "a law that lags"): of_the_law(
-            lambda law: replace(law, gain=2.0, feedforward=False)
-        ),
-        ("field", "a GJK that gives up"): of_a_method("gjk", given_up),
-        ("../automaton.md", "a tracker that asks regions"): setting(so, "Tracker", pages.Asking),
-        ("../automaton.md", "a lens for the ellipsoid"): setting(
-            so.shapes, "ellipsoid", lambda *axes: so.shapes.lens(1.0, 0.45)
-        ),
-        ("../automaton.md", "minima asked up to 0.3 length"): edited("minima=0.75", "minima=0.3"),
-        ("../benchmarks.md", "exact bodies for the hulls"): setting(pages, "FELT", pages.exact),
-        ("../certificate.md", "one face turned"): setting(pages, "TILT", 0.1),
-        ("../convexity.md", "a patch that bulges"): edited("-= sign * sag", "+= sign * sag"),
-        ("../laws.md", "gain halved"): setting(so, "Tracker", HALVED),
-        ("../pair-system.md", "b for rotation only"): setting(system, "feedforward", turning_only),
-        ("../pair-system.md", "first fundamental forms for H"): setting(
-            so.tracking, "pair_system", first_forms
-        ),
-        ("../pair-system.md", "missing parameters not held"): setting(system, "hessian", unmasked),
-        ("../penetration.md", "depth='local'"): setting(pages, "DEPTH", "local"),
-        ("../penetration.md", "distances without a sign"): setting(so, "distance", unsigned),
-        ("../servo-loop.md", "1000 steps in a tick"): setting(pages, "STEPS", 1000),
-        ("../solids.md", "a swing fifty times as fast"): edited("0.2, 101)", "0.2, 3)"),
-        ("../solids.md", "bounds ten frames late"): setting(pages, "LATE", 10),
-        ("../solids.md", "minima asked up to 1 length"): setting(pages, "REACH", 1.0),
-        ("../surfaces.md", "no weights"): edited(
-            "patches[0].jet", "type(patches[0])(patches[0].control_points).jet"
-        ),
-        ("../surfaces.md", "the pole outside"): edited("1/(u - 0.3)", "1/(u + 0.3)"),
-        ("definite.md", "first fundamental forms for H"): setting(
-            so.tracking, "pair_system", first_forms
-        ),
-        ("definite.md", "the second form left out"): edited("F.T @ F + second @ dR", "F.T @ F"),
-    }
-    | {
-        (figure, "the default law lags"): replacing(pair_simulation, "Tracker", LooseTracker)
-        for figure in ("15", "16", "19")
-    }
-    | {(figure, one.key): partial(broken, one) for one in BREAKS for figure in FIGURES}
-)
+CHANGES: dict[tuple[str, str], Within] = {
+    ("1", "tangents twice as long"): replacing(
+        patches, "curved_face", lambda: Stretched(patches._control_points())
+    ),
+    ("2", "a place beside the foot"): replacing(patches, "_answer", beside_the_foot),
+    ("3", "Euler's method"): replacing(realisations, "Tracker", OTHERWISE),
+    ("4", "Euler's method, gain halved"): replacing(realisations, "Tracker", OTHERWISE),
+    ("5", "distances a tick late"): replacing(loop, "exact_distances", a_tick_late),
+    ("5", "300 steps in a tick"): replacing(loop, "_microseconds", many_ticks),
+    ("5", "a hand over one face"): replacing(
+        loop, "WAY", OVER_A_FACE, loop, "WAY_DOWN", ((20.0, 25.0), (30.0, 25.0))
+    ),
+    ("5", "a quarter of the stiffness"): replacing(loop_said, "CONTACT", SOFTER),
+    ("7", "K h = 1.9, another start"): replacing(
+        *(run_a, "Tracker", following(near_the_limit), gains_a, "START", (0.3, 0.4)),
+        *(gains_a, "try_all", lambda at, k, frames: TRY(at, 0.0 * k + 1900.0, frames)),
+    ),
+    ("8", "a line and a branch left out"): replacing(regions_b, "run", without_a_line),
+    ("10", "the default law lags"): replacing(run_b, "PointTracker", LoosePoint),
+    ("12", "lines that go inwards"): replacing(regions_c, "regions", turned_inwards),
+    ("15", "the default law never switches"): replacing(
+        pair_simulation, "Tracker", defaulting(replace(LOOSE, switching="none", reset="foot"))
+    ),
+    ("16", "the default law lags"): LAGGING,
+    ("19", "the default law lags"): LAGGING,
+    ("arrivals", "half as many arrive"): replacing(arrivals, "committed", half_arrived),
+    ("harder", "the printed and the covariant M exchanged"): replacing(
+        cells, "LAWS", EXCHANGED, rings, "RING_LAWS", RINGS_EXCHANGED
+    ),
+    ("voronoi", "the other body's feature"): replacing(
+        voronoi_figure, "distance", of_another_feature
+    ),
+    ("gains", "gain halved, all limits 2"): replacing(
+        so, "Tracker", HALVED, gains, "stability_limit", lambda name: 2.0
+    ),
+    ("lower", "an error that can be kept"): replacing(lower, "OUTRUN", lower.KEPT),
+    ("lower", "half of the least gain"): replacing(so, "min_gain", half_the_least),
+    ("lower", "gain halved"): replacing(so, "Tracker", HALVED),
+    ("stability", "Euler's roots for all"): replacing(roots, "sampled_roots", by_euler),
+    ("feedback", "gain halved"): replacing(so, "Tracker", HALVED),
+    ("basin", "K h = 1.5"): replacing(so, "Tracker", following(long_steps)),
+    ("lyapunov", "20 frames, −E for E"): replacing(
+        levels, "FRAMES", 20, levels, "functions", of_other_signs
+    ),
+    ("normals", "a fiftieth of each step"): replacing(normals_study, "advanced", hardly_moved),
+    ("nonconvex", "no feedforward"): replacing(nonconvex_runs, "Tracker", UNFED),
+    ("nonconvex", "one branch answers"): replacing(nonconvex, "run", one_branch),
+    ("nonconvex", "a pin within the evolute"): replacing(
+        nonconvex, "in_bore", lambda: in_bore(0.05)
+    ),
+    ("nonconvex", "minima asked up to 1 length"): replacing(nonconvex_runs, "FAR", 1.0),
+    ("furthest", "no feedforward"): replacing(furthest, "Tracker", UNFED),
+    ("furthest", "first fundamental forms for H"): replacing(furthest, "pair_system", first_forms),
+    ("furthest", "quick through contact"): replacing(furthest, "SLOW", 0.49),
+    ("variants", "the covariant M, a loose gain"): replacing(
+        so, "Tracker", following(covariant_and_loose)
+    ),
+    ("cost", "half of the law's step"): replacing(update_cost, "law_step", half_a_step),
+    ("verdict", "feedforwards exchanged"): replacing(so, "Tracker", following(otherwise_predicted)),
+    ("field", "two Newton steps with a test"): of_a_method("blind", newton.newton),
+    ("field", "RK4"): of_the_law(lambda law: replace(law, integrator="rk4")),
+    ("field", "Newton's step for the law's"): of_the_law(
+        lambda law: replace(law, integrator="euler", gain=1.0 / methods.STEP)
+    ),
+    ("field", "a law that lags"): of_the_law(
+        lambda law: replace(law, gain=20.0, feedforward=False), step=0.05
+    ),
+    ("field", "a GJK that gives up"): of_a_method("gjk", given_up),
+    ("../automaton.md", "a tracker that asks regions"): setting(so, "Tracker", pages.Asking),
+    ("../automaton.md", "a lens for the ellipsoid"): setting(
+        so.shapes, "ellipsoid", lambda *axes: so.shapes.lens(1.0, 0.45)
+    ),
+    ("../automaton.md", "minima asked up to 0.3 length"): edited("minima=0.75", "minima=0.3"),
+    ("../benchmarks.md", "exact bodies for the hulls"): setting(pages, "FELT", pages.exact),
+    ("../certificate.md", "one face turned"): setting(pages, "TILT", 0.1),
+    ("../convexity.md", "a patch that bulges"): edited("-= sign * sag", "+= sign * sag"),
+    ("../laws.md", "gain halved"): setting(so, "Tracker", HALVED),
+    ("../pair-system.md", "b for rotation only"): setting(system, "feedforward", turning_only),
+    ("../pair-system.md", "first fundamental forms for H"): setting(
+        so.tracking, "pair_system", first_forms
+    ),
+    ("../pair-system.md", "missing parameters not held"): setting(system, "hessian", unmasked),
+    ("../penetration.md", "depth='local'"): setting(pages, "DEPTH", "local"),
+    ("../penetration.md", "distances without a sign"): setting(so, "distance", unsigned),
+    ("../servo-loop.md", "1000 steps in a tick"): setting(pages, "STEPS", 1000),
+    ("../solids.md", "a swing fifty times as fast"): edited("0.2, 101)", "0.2, 3)"),
+    ("../solids.md", "bounds ten frames late"): setting(pages, "LATE", 10),
+    ("../solids.md", "minima asked up to 1 length"): setting(pages, "REACH", 1.0),
+    ("../surfaces.md", "no weights"): edited(
+        "patches[0].jet", "type(patches[0])(patches[0].control_points).jet"
+    ),
+    ("../surfaces.md", "the pole outside"): edited("1/(u - 0.3)", "1/(u + 0.3)"),
+    ("definite.md", "first fundamental forms for H"): setting(
+        so.tracking, "pair_system", first_forms
+    ),
+    ("definite.md", "the second form left out"): edited("F.T @ F + second @ dR", "F.T @ F"),
+} | {(figure, one.key): partial(broken, one) for one in BREAKS for figure in FIGURES}
 """By figure or page, and by the name that ``promises.toml`` has."""
 
 
