@@ -12,6 +12,7 @@ from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import replace
 from functools import cache, partial
 from importlib import import_module
+from time import perf_counter
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 from unittest.mock import patch
@@ -19,9 +20,10 @@ from unittest.mock import patch
 import numpy as np
 
 import standoff as so
-from standoff.geometry import BezierPatch
+from standoff.geometry import BezierPatch, ellipsoid_patches
 from standoff.kernels.pair import system
 from standoff.points import PointTracker
+from standoff.simulation import DeviceReadings
 from standoff_studies.paper import (
     furthest,
     nonconvex,
@@ -43,6 +45,7 @@ from standoff_studies.paper.convergence.cells import Cell
 from standoff_studies.paper.convergence.pairs import pair
 from standoff_studies.paper.field import figures as field
 from standoff_studies.paper.field import methods, newton, rows, support
+from standoff_studies.paper.field.work import STEP as STEP_OF_FIELD
 from standoff_studies.paper.field.work import Work
 from standoff_studies.paper.figure import Statement
 from standoff_studies.paper.in_the_loop import run as loop
@@ -59,12 +62,12 @@ from standoff_studies.paper.verdicts import Verdict
 
 Tracker = so.Tracker
 harder: Any = import_module(f"{PAPER}.convergence.harder")  # the package has a function of its name
-FOOT, ROOTS = patches._answer, roots.sampled_roots
+FOOT, ROOTS = patches._answer, vars(roots)["sampled_roots"]
 ADVANCED, STEP = normals_study.advanced, update_cost.law_step
 FUNCTIONS, SYSTEM = levels.functions, so.tracking.pair_system
-TRY, EXACT = gains_a.try_all, loop.exact_distances
+TRY, EXACT = vars(gains_a)["try_all"], loop.exact_distances
 HESSIAN, FEEDFORWARD = system.hessian, system.feedforward
-B, C, RUN = regions_b.run, regions_c.regions, nonconvex_runs.run
+B, C, RUN = vars(regions_b)["run"], regions_c.regions, nonconvex_runs.run
 DISTANCE, LEAST, LAW, TIMED = so.distance, so.min_gain, methods.law_of, loop._microseconds
 
 Within = Callable[[], AbstractContextManager[Any]]
@@ -300,7 +303,7 @@ def unsigned(*pair: Any, **options: Any) -> Any:
 
 def without_weights(*axes: float) -> tuple[BezierPatch, ...]:
     """An ellipsoid's patches that are polynomials."""
-    return tuple(BezierPatch(one.control_points) for one in pages.ellipsoid_patches(*axes))
+    return tuple(BezierPatch(one.control_points) for one in ellipsoid_patches(*axes))
 
 
 def half_the_least(*pair: Any, **options: Any) -> Any:
@@ -316,11 +319,11 @@ def one_branch(reading: str, leave_out: int | None = None) -> Any:
 
 def many_ticks(one: Any) -> float:
     """The time of a tick with three hundred steps [µs]."""
-    given = loop.sim.DeviceReadings.along(loop.hand_pose, 20, loop.PERIOD)
-    state, began = one.start().engage(), loop.time.perf_counter()
+    given = DeviceReadings.along(loop.hand_pose, 20, loop.PERIOD)
+    state, began = one.start().engage(), perf_counter()
     for _ in range(300):
         one.run(state, len(given), len(given), device=given)
-    return 1e6 * (loop.time.perf_counter() - began) / len(given)
+    return 1e6 * (perf_counter() - began) / len(given)
 
 
 def a_tick_late(made: Any) -> Any:
@@ -393,10 +396,10 @@ FEW_ROWS = replacing(field, "committed", few_rows)
 SHARES: Mapping[str, Within] = {"harder": FEW_HARDER, "field": FEW_ROWS}
 
 
-def of_the_law(change: Callable[[so.PaperLaw], so.PaperLaw], step: float = methods.STEP) -> Within:
+def of_the_law(change: Callable[[so.PaperLaw], so.PaperLaw], step: float = STEP_OF_FIELD) -> Within:
     """The printed law of the field changed, and its frame time [s]."""
 
-    def law_of(key: str, gain: float = 1.0 / methods.STEP) -> Any:
+    def law_of(key: str, gain: float = 1.0 / STEP_OF_FIELD) -> Any:
         return change(LAW(key, gain)) if key == "paper" else LAW(key, gain)
 
     return replacing(methods, "law_of", law_of, methods, "STEP", step)
@@ -436,9 +439,6 @@ CHANGES: dict[tuple[str, str], Within] = {
     ("8", "a line and a branch left out"): replacing(regions_b, "run", without_a_line),
     ("10", "the default law lags"): replacing(run_b, "PointTracker", LoosePoint),
     ("12", "lines that go inwards"): replacing(regions_c, "regions", turned_inwards),
-    ("15", "the default law never switches"): replacing(
-        pair_simulation, "Tracker", defaulting(replace(LOOSE, switching="none", reset="foot"))
-    ),
     ("16", "the default law lags"): LAGGING,
     ("19", "the default law lags"): LAGGING,
     ("arrivals", "half as many arrive"): replacing(arrivals, "committed", half_arrived),
@@ -478,7 +478,7 @@ CHANGES: dict[tuple[str, str], Within] = {
     ("field", "two Newton steps with a test"): of_a_method("blind", newton.newton),
     ("field", "RK4"): of_the_law(lambda law: replace(law, integrator="rk4")),
     ("field", "Newton's step for the law's"): of_the_law(
-        lambda law: replace(law, integrator="euler", gain=1.0 / methods.STEP)
+        lambda law: replace(law, integrator="euler", gain=1.0 / STEP_OF_FIELD)
     ),
     ("field", "a law that lags"): of_the_law(
         lambda law: replace(law, gain=20.0, feedforward=False), step=0.05

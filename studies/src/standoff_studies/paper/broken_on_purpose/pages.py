@@ -173,7 +173,7 @@ def one_newton_step() -> bool:
     a, b = so.shapes.ellipsoid(1.0, 0.7, 0.5), so.shapes.ellipsoid(0.4, 0.9, 0.6)
     pose, off = Pose.exp((0.4, -0.1, 0.2), (2.5, 0.3, 0.2)), np.array([0.01, -0.01, 0.0])
     found = so.distance(a, b, HOME, pose)
-    places = [(on, tuple(at + off)) for on, at in (found.place_a, found.place_b)]
+    places: Any = [(on, tuple(at + off)) for on, at in (found.place_a, found.place_b)]
     law = so.PaperLaw(integrator="euler", gain=1e3, solve="plain", switching="none", restarts=False)
     tracker = so.Tracker(a, b, 1e-3, law=law)
     _, answer = tracker.step(tracker.start_from(HOME, pose, *places), HOME, pose)
@@ -307,7 +307,8 @@ REACH = 5.0
 
 def tracked_chains(**options: Any) -> Any:
     """Return the answers along the motion of two chains of balls."""
-    tracker = SolidTracker(*(chain(balls) for balls in BALLS), **options)
+    a, b = (chain(balls) for balls in BALLS)
+    tracker = SolidTracker(a, b, **options)
     poses = truth().poses[::EVERY][: FRAMES + 1]
     state = tracker.start(HOME, poses[0])
     return tracker.run(state, HOME, poses[1:])[1]
