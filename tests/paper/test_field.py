@@ -128,6 +128,26 @@ def test_ellipsoids_by_resultants(rng: np.random.Generator) -> None:
         np.testing.assert_allclose(points, [due.point_a, due.point_b], atol=1e-9)
 
 
+def test_newton_goes_on_over_a_side() -> None:
+    """From a side of the next patch it comes to the closest point, a little beyond on this one."""
+    shells, tried = (Shell(lens_of_patches()), Shell(so.shapes.point())), 0
+    shell, home = shells[0], so.Pose.identity()
+    shell.move(home)
+    for patch, axis, end in shell.sides:
+        if axis == 1:  # where the patch ends in a point
+            continue
+        foot = np.array([0.03 + 0.94 * end, 0.5])
+        jet = shell.jet(Spot(patch, foot), 1)
+        n = np.cross(*jet.tangents)
+        way = np.sign(n @ jet.x) * n / np.linalg.norm(n)
+        shells[1].move(so.Pose(np.eye(3), jet.x + 0.3 * way))
+        for other, _ in shell.beyond(Spot(patch, np.array([end, 0.5]))):
+            _, points = newton.newton(shells, (other, Spot(0, np.zeros(0))))
+            np.testing.assert_allclose(points[0], jet.x, atol=1e-7)
+            tried += other.patch != patch
+    assert tried == 6
+
+
 def test_every_kind_of_place_is_a_spot() -> None:
     """A start's place, and an answer's on a face, an edge and a vertex."""
     one = work("D patches")
