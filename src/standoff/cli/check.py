@@ -102,7 +102,8 @@ def _facts(subject: Subject) -> dict[str, Any]:
             "shape": body.name,
             "convex": False,
             "length_unit": subject.unit,
-            "report": dict(planar_rows(body, subject.unit)),
+            "report": {"dimension": 2, "loops": len(body.loops), "edges": body.n_edges}
+            | {key: getattr(body, key) for key in ("size", "area", "area_error", "slack")},
             "notes": list(subject.notes),
         }
     return {

@@ -63,8 +63,8 @@ def subjects(command: CheckCommand) -> list[Subject]:
         found = [Subject(path.stem, read_body(table), DEFAULT_LENGTH_UNIT)]
     else:
         raise CommandError(
-            f"{shown(what)} is not a scene (.toml), a file of patches (.json), of parts "
-            f"({', '.join(ENDINGS)}) or a shape such as {EXAMPLE}"
+            f"{shown(what)} is not a scene (.toml), a file of patches (.json) or a shape such as "
+            f"{EXAMPLE}, nor a file of parts ({', '.join(ENDINGS)})"
         )
     if body is None:
         return found
