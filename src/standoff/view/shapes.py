@@ -126,7 +126,8 @@ def _flat_shape(solid: PlanarSolid) -> Shape:
     low, high = np.min([x.min(0) for x in lines], 0), np.max([x.max(0) for x in lines], 0)
     edges = dict(enumerate(lines))
     vertices = np.array([line[0] for line in lines])
-    return Shape(solid, None, {}, edges, tuple(edges), vertices, solid.size, 0.5 * (low + high))
+    size, middle = float(np.linalg.norm(high - low)), 0.5 * (low + high)
+    return Shape(solid, None, {}, edges, tuple(edges), vertices, size, middle)
 
 
 def _pieces(points: Array) -> Array:
