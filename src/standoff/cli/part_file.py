@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from standoff.cad.files import ENDINGS as CAD
 from standoff.cli.errors import CommandError
 from standoff.cli.option_groups import MeshFlags
 from standoff.errors import StandoffError
 from standoff.scene.files import file_problem
-from standoff.scene.part_files import CAD, ENDINGS, MESHES, FileParts, file_parts
+from standoff.scene.part_files import ENDINGS, MESHES, FileParts, file_parts
 
 OPTIONS = {"Give hull = true": "Give --hulls", "pieces = true": "--pieces"}
 """What messages say to do, as commands say it."""

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from standoff.cad.files import ENDINGS as CAD
 from standoff.scene.files import existing_file
 from standoff.scene.part_files import (
-    CAD,
     ENDINGS,
     MESHES,
     WITHOUT_UNIT,
