@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import standoff as so
+from standoff.geometry import ConicArc
 from standoff.solids import read_dxf
 
 ezdxf = pytest.importorskip("ezdxf")
@@ -257,8 +258,11 @@ def test_ends_are_joined_up_to_a_limit_and_told(
         assert len(told) == (gap > 1e-9 * size)
         if told:
             assert f"by up to {solid.slack:.3g} mm, at [" in told[0]
-        # the true outline is no nearer to a point than the bound says
-        assert abs(solid.signed_distance([[5.0, -1.0]])[0] - 1.0) <= solid.slack + 1e-9
+        disc = so.PlanarSolid.from_loops([ConicArc((5, -1), (0.5, 0), (0, 0.5))])
+        answer = so.distance(solid, disc, so.Pose.identity(), so.Pose.identity())
+        # that of the outline without gaps
+        assert answer.lower_bound <= 0.5 + 1e-12
+        assert abs(answer.distance - 0.5) <= solid.slack + 1e-9
 
 
 def test_details_below_the_limit_stay(tmp_path: Path) -> None:
