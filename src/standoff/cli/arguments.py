@@ -122,7 +122,7 @@ class ClearanceCommand:
     """
 
     scene: SceneFile
-    """Scene file; docs/scene-format.md describes the format."""
+    """Scene file (docs/scene-format.md), or a file of parts: CAD, DXF or meshes."""
     time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """Scene time in s; the first frame's if not given."""
     motion: Annotated[bool, arg(help_behavior_hint="")] = False
@@ -220,7 +220,7 @@ class SimulateCommand:
 
 @dataclass(frozen=True)
 class ViewCommand:
-    """Show a scene in the browser: drag a body, and watch witness points and distance.
+    """Show a scene or a file's parts in the browser: drag a body, and watch the distance.
 
     The scene of a simulation is run first, then played with all its contacts.
 
@@ -230,7 +230,7 @@ class ViewCommand:
     """
 
     scene: SceneFile
-    """Scene file; docs/scene-format.md describes the format."""
+    """Scene file (docs/scene-format.md), or a file of parts: CAD, DXF or meshes."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """This one of the scene's [[pairs]]; the first if not given."""
     host: Annotated[str, arg(metavar="HOST", help_behavior_hint="")] = "127.0.0.1"
