@@ -11,6 +11,7 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
+from standoff.checks.units import lengths_told
 from standoff.geometry.validation import Array
 from standoff.wording import counted
 
@@ -200,10 +201,8 @@ class Assembly:
 
     def report(self) -> str:
         """What was found, as text."""
-        converted = self.file_unit and self.unit != self.file_unit
-        told = f", converted from {self.file_unit}" if converted else ""
-        parts, unit = counted(len(self.parts), "part"), self.unit or "no known unit"
-        lines = [f"{self.source}: {parts}, lengths in {unit}{told}"]
+        parts = counted(len(self.parts), "part")
+        lines = [f"{self.source}: {parts}, {lengths_told(self.unit, self.file_unit)}"]
         seen: list[PartReport] = []
         for part in self.parts:
             if all(part.report is not one for one in seen):

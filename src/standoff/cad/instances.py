@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from standoff.cad.opencascade import KINDS, cast, compound, explored, is_kind, matrix_of
+from standoff.checks.units import METRES
 from standoff.errors import CadError
 from standoff.geometry.validation import Array
 
-METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254}
-"""Units of length, in metres."""
 NAMES = {"millimetre": "mm", "centimetre": "cm", "metre": "m", "INCH": "inch", "inch": "inch"}
 Colour = tuple[float, float, float, float]
 

@@ -10,10 +10,10 @@ from typing import Any
 from standoff.cad.assembly import Assembly, Part, PartReport
 from standoff.cad.files import ENDINGS, check_lines, check_step, existing
 from standoff.checks.real_numbers import shown
+from standoff.checks.units import known_unit
 from standoff.errors import CadError, StandoffError, StandoffTypeError
 from standoff.wording import counted
 
-UNITS = ("mm", "cm", "m", "inch")
 MOST_NAMED = 5
 
 
@@ -174,8 +174,8 @@ def from_shape(
 
 
 def _checked(unit: str, heal: bool, keep: str) -> tuple[str, bool, str]:
-    if unit and unit not in UNITS:
-        raise StandoffError(f"unit = {shown(unit)}: give one of {UNITS}.", "unit", unit)
+    if unit:
+        known_unit(unit)
     if not isinstance(heal, bool):
         raise StandoffTypeError(f"heal = {shown(heal)}: give True or False.", "heal", heal)
     if keep not in ("all", "readable"):

@@ -18,6 +18,7 @@ from standoff.cli.option_groups import (
     AS_USUAL,
     NO_FILES,
     NO_FLAGS,
+    NO_INSTEAD,
     NO_PAPER_FLAGS,
     NO_SOLID_FLAGS,
     OWN_FRAMES,
@@ -25,6 +26,7 @@ from standoff.cli.option_groups import (
     FileFlags,
     FrameFlags,
     LawFlags,
+    MeshFlags,
     PaperFlags,
     ReportFlags,
     SceneFile,
@@ -111,7 +113,7 @@ class ClearanceFiles:
 
 @dataclass(frozen=True)
 class ClearanceCommand:
-    """Report the proven clearance of all pairs of a scene's bodies or an assembly's parts.
+    """Report the proven clearance of all pairs of a scene's bodies or a file's parts.
 
     Example: standoff clearance examples/fits.toml --min 0.3 --allow examples/fits-allowed.toml
 
@@ -120,7 +122,7 @@ class ClearanceCommand:
     """
 
     scene: SceneFile
-    """Scene file; docs/scene-format.md describes the format."""
+    """Scene file (docs/scene-format.md), or a file of parts: CAD, DXF or meshes."""
     time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """Scene time in s; the first frame's if not given."""
     motion: Annotated[bool, arg(help_behavior_hint="")] = False
@@ -131,6 +133,7 @@ class ClearanceCommand:
     """The clearance that every pair must keep; margins in the scene hold besides."""
     allow: Annotated[Path | None, arg(metavar="FITS.toml", help_behavior_hint="")] = None
     """Contacts that are meant; docs/clearance.md describes the format."""
+    meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     files: Annotated[ClearanceFiles, group("file")] = ClearanceFiles()
     report: Annotated[ReportFlags, group("report")] = AS_USUAL
 
@@ -145,10 +148,12 @@ class CheckCommand:
     """
 
     what: Annotated[Positional[str], arg(metavar="SCENE.toml|BODY.json|PART.step|SHAPE")]
-    """A scene, a file of patches, a CAD file (STEP, BREP or IGES), or a shape written as in a
-    scene, such as 'shape = "box", size = [1, 2, 3]'."""
+    """A scene, a file of patches, a CAD file (STEP, BREP or IGES), a DXF drawing, a file of meshes
+    (STL, OBJ, PLY or 3MF), or a shape written as in a scene, such as
+    'shape = "box", size = [1, 2, 3]'."""
     body: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
-    """Only this one of a scene's bodies or a CAD file's parts."""
+    """Only this one of a scene's bodies or a file's parts."""
+    meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Draw the body with its features and normals, or a CAD file's part with its edges by kind, to
     this file (.png, .svg or .pdf); with several, each gets its own, OUT-NAME.png."""
@@ -215,7 +220,7 @@ class SimulateCommand:
 
 @dataclass(frozen=True)
 class ViewCommand:
-    """Show a scene in the browser: drag a body, and watch witness points and distance.
+    """Show a scene or a file's parts in the browser: drag a body, and watch the distance.
 
     The scene of a simulation is run first, then played with all its contacts.
 
@@ -225,7 +230,7 @@ class ViewCommand:
     """
 
     scene: SceneFile
-    """Scene file; docs/scene-format.md describes the format."""
+    """Scene file (docs/scene-format.md), or a file of parts: CAD, DXF or meshes."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """This one of the scene's [[pairs]]; the first if not given."""
     host: Annotated[str, arg(metavar="HOST", help_behavior_hint="")] = "127.0.0.1"
@@ -239,6 +244,7 @@ class ViewCommand:
     0.3 of the smaller one's size if not given."""
     patch: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
     """Of such a pair: show the patch of each minimum, what is farther by no more than this."""
+    meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     open: Annotated[bool, arg(help_behavior_hint="")] = False
     """Open the page in the usual browser."""
 

@@ -6,7 +6,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-from standoff.cad.files import ENDINGS
 from standoff.clearance.facts import report_facts
 from standoff.clearance.fits import load_fits
 from standoff.clearance.over_time import bounds_over, walk
@@ -17,9 +16,11 @@ from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, world_facts
 from standoff.cli.output import write_whole
+from standoff.cli.part_file import check_meshes
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, load_scene
+from standoff.scene.part_files import ENDINGS
 from standoff.scene.reader import Array
 from standoff.world import World
 
@@ -35,6 +36,7 @@ def run_clearance(command: ClearanceCommand) -> int:
         If the files could not be written after all.
     """
     _check(command)
+    check_meshes(command.scene, command.meshes)
     if command.scene.suffix.lower() in ENDINGS:
         from standoff.cli.clearance_assembly import run_on_assembly
 

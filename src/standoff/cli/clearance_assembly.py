@@ -24,6 +24,7 @@ from standoff.cli.clearance_lines import print_report
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import write_whole
+from standoff.cli.part_file import is_part_file, parts_of
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
@@ -48,7 +49,13 @@ def run_on_assembly(command: ClearanceCommand) -> int:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     check_files(command)
-    file, parts = _read(command.scene)
+    if is_part_file(command.scene):
+        read = parts_of(command.scene, command.meshes)
+        places = {name: part.pose for name, part in read.found.items()}
+        parts = {name: part.shape for name, part in read.found.items()}
+        file = AssemblyFile(command.scene, command.scene.name, read.unit, read.notes, places)
+    else:
+        file, parts = _read(command.scene)
     within = math.inf if command.within is None else command.within
     if command.min is not None:
         within = max(within, command.min)
