@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from standoff.bodies.body import Body
-from standoff.bodies.boundary import Boundary
-from standoff.geometry.validation import Array
+from standoff.cad.finished import Finished
 from standoff.wording import counted
 
 if TYPE_CHECKING:
+    from standoff.bodies.body import Body
+    from standoff.bodies.boundary import Boundary
+    from standoff.geometry.validation import Array
     from standoff.solids import Solid
 
 
@@ -106,30 +106,36 @@ class Part:
     ----------
     name : str
         Of the instance and its assemblies, such as "rod-assembly/NUT::1".
-    shape : Boundary or Body
-        In its own frame. Instances of one solid share it.
     pose : (4, 4) array
         Of its frame in the assembly's.
     colour : (red, green, blue, opacity) or None
         Each within [0, 1], as in the file.
     report : PartReport
-    made : Solid, optional
-        The shape as a `Solid`, where it is made already.
+    finished : Finished
+        What instances of one solid share.
     """
 
     name: str
-    shape: Boundary | Body
     pose: Array
     colour: tuple[float, float, float, float] | None
     report: PartReport
-    made: Solid | None = None
+    finished: Finished
 
-    @cached_property
+    @property
+    def shape(self) -> Boundary | Body:
+        """In its own frame. Instances of one solid share it."""
+        return self.finished.shape
+
+    @property
     def solid(self) -> Solid:
-        """The shape as a `Solid`, for distances of parts that need not be convex; made once."""
-        from standoff.solids import Solid
+        """The shape as a `Solid`, for distances of parts that need not be convex; they share it
+        too."""
+        return self.finished.solid
 
-        return Solid(self.shape) if self.made is None else self.made
+    @property
+    def body(self) -> Body | Solid:
+        """What a world takes: the shape where it is convex, else the solid."""
+        return self.finished.solid if not self.report.convex else self.finished.shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,6 +155,8 @@ class Assembly:
         Parts left out because `keep="readable"` was asked for, with the reasons, and shapes without
         a face.
     seconds : float
+    stored : bool
+        Was all of it in the store?
     """
 
     parts: tuple[Part, ...]
@@ -157,6 +165,7 @@ class Assembly:
     source: str
     refusals: tuple[str, ...] = ()
     seconds: float = 0.0
+    stored: bool = False
 
     def __len__(self) -> int:
         return len(self.parts)
@@ -202,6 +211,7 @@ class Assembly:
         """What was found, as text."""
         converted = self.file_unit and self.unit != self.file_unit
         told = f", converted from {self.file_unit}" if converted else ""
+        told += ", read before" if self.stored else ""
         parts, unit = counted(len(self.parts), "part"), self.unit or "no known unit"
         lines = [f"{self.source}: {parts}, lengths in {unit}{told}"]
         seen: list[PartReport] = []
