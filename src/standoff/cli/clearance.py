@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from standoff.cad.files import ENDINGS
+from standoff.cad.files import is_cad_file
 from standoff.clearance.facts import report_facts
 from standoff.clearance.fits import load_fits
 from standoff.clearance.over_time import bounds_over, walk
@@ -35,7 +35,7 @@ def run_clearance(command: ClearanceCommand) -> int:
         If the files could not be written after all.
     """
     _check(command)
-    if command.scene.suffix.lower() in ENDINGS:
+    if is_cad_file(command.scene):
         from standoff.cli.clearance_assembly import run_on_assembly
 
         return run_on_assembly(command)

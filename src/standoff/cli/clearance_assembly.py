@@ -48,7 +48,7 @@ def run_on_assembly(command: ClearanceCommand) -> int:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     check_files(command)
-    file, parts = _read(command.scene)
+    file, parts = _read(command.scene, command.workers)
     within = math.inf if command.within is None else command.within
     if command.min is not None:
         within = max(within, command.min)
@@ -73,10 +73,10 @@ def _report(file: AssemblyFile, parts: dict[str, Any], within: float, wanted: Wa
     return report_on(world, near, bounds_of(world, answer, near), wanted)
 
 
-def _read(path: Path) -> tuple[AssemblyFile, dict[str, Any]]:
+def _read(path: Path, workers: int) -> tuple[AssemblyFile, dict[str, Any]]:
     """The file, and the parts in their own frames."""
     try:
-        assembly = read_cad(path)
+        assembly = read_cad(path, workers=workers)
         parts = assembly.by_name
         places = {name: Pose.of(part.pose) for name, part in parts.items()}
     except (StandoffError, OSError) as error:
@@ -86,7 +86,7 @@ def _read(path: Path) -> tuple[AssemblyFile, dict[str, Any]]:
     else:
         notes = ()
     file = AssemblyFile(path, assembly.source, assembly.unit, notes, places)
-    return file, {name: part.shape for name, part in parts.items()}
+    return file, {name: part.body for name, part in parts.items()}
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:

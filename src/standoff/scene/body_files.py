@@ -126,7 +126,7 @@ def _parts(path: Path, version: tuple[int, int], unit: str, heal: bool) -> _Part
     from standoff.cad.reading import read_cad
 
     read = read_cad(path, unit=unit, heal=heal, keep="readable")
-    found = {name: _from_file(name, part.shape, part.pose) for name, part in read.by_name.items()}
+    found = {name: _from_file(name, part.body, part.pose) for name, part in read.by_name.items()}
     return _Parts(found, read.refusals)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,15 @@ if TYPE_CHECKING:
 
 # Places that a message names.
 MOST_NAMED = 3
+
+_made: WeakValueDictionary[int, Solid] = WeakValueDictionary()
+"""The solids that there are, by the identity of their boundaries, which they keep."""
+
+
+def solid_of(boundary: Boundary) -> Solid:
+    """The solid of a boundary that somebody has already, or a new one; raises as `Solid` does."""
+    found = _made.get(id(boundary))
+    return Solid(boundary) if found is None else found
 
 
 class Solid(SolidModel, Plotted):
@@ -76,6 +86,11 @@ class Solid(SolidModel, Plotted):
                 "boundary",
                 self.self_intersections,
             )
+        _made[id(boundary)] = self
+
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
+        _made[id(self.given)] = self
 
     @staticmethod
     def from_brep(
