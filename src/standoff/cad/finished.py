@@ -23,9 +23,54 @@ if TYPE_CHECKING:
     from standoff.solids import Solid
 
 
+class _Writer(pickle.Pickler):
+    """Of a solid, without the shape that it is of."""
+
+    def __init__(self, stream: io.BytesIO, shape: Any) -> None:
+        super().__init__(stream)
+        self.shape = shape
+
+    def persistent_id(self, part: Any) -> str | None:
+        """A name in the shape's place."""
+        return "shape" if part is self.shape else None
+
+
+class _Reader(pickle.Unpickler):
+    """Of what `_Writer` wrote, for the same shape."""
+
+    def __init__(self, content: bytes, shape: Any) -> None:
+        super().__init__(io.BytesIO(content))
+        self.shape = shape
+
+    def persistent_load(self, name: str) -> Any:
+        """The shape."""
+        return self.shape
+
+
+def _solid_written(solid: Solid) -> bytes:
+    stream = io.BytesIO()
+    _Writer(stream, solid.given).dump(solid)
+    return stream.getvalue()
+
+
+class Packed(NamedTuple):
+    """What was made, as it goes to the store, and from one process to another."""
+
+    report: PartReport
+    refused: bool
+    shape: bytes
+    solid: bytes | None
+
+    @staticmethod
+    def of(made: Made) -> Packed:
+        """The solid is None where the part is convex, or refused."""
+        solid = None if made.solid is None else _solid_written(made.solid)
+        return Packed(made.report, made.shape is None, pickle.dumps(made.shape), solid)
+
+
 class Finished:
-    """A solid of a file, as its instances share it; of one of the store the shape is unpickled
-    when it is first asked for.
+    """A solid of a file, as its instances share it; shape and solid are unpickled when they are
+    first asked for.
 
     Attributes
     ----------
@@ -34,47 +79,45 @@ class Finished:
         Is there no shape?
     """
 
-    def __init__(self, report: PartReport, refused: bool, stored: bytes) -> None:
-        self.report, self.refused = report, refused
-        self._stored = stored
-
-    @staticmethod
-    def of(made: Made) -> Finished:
-        """What was made in this process."""
-        found = Finished(made.report, made.shape is None, b"")
-        found.__dict__["_made"] = made.shape, made.solid
-        return found
-
-    @staticmethod
-    def unpacked(content: bytes) -> Finished:
-        """What `packed` wrote."""
-        return Finished(*pickle.loads(content))
+    def __init__(self, packed: Packed, key: str, made: Made | None = None) -> None:
+        self.report, self.refused, self._shape, self._solid = packed
+        self._key = f"{key}-solid"
+        if made is not None:  # by this process
+            self.__dict__ |= {"shape": made.shape}
+            if made.solid is not None:
+                self.__dict__ |= {"solid": made.solid}
 
     @cached_property
-    def _made(self) -> tuple[Boundary | Body | None, Solid | None]:
-        made: tuple[Boundary | Body | None, Solid | None] = pickle.loads(self._stored)
-        self._stored = b""
-        return made
-
-    @property
     def shape(self) -> Boundary | Body:
         """Of one that is not refused."""
-        shape = self._made[0]
-        assert shape is not None
+        shape: Boundary | Body = pickle.loads(self._shape)
         return shape
 
     @cached_property
     def solid(self) -> Solid:
-        """The shape as a `Solid`."""
-        from standoff.solids import Solid
+        """The shape as a `Solid`; the store has that of a convex one once it was asked for."""
+        from standoff.solids.spatial.solid import solid_of
 
-        return Solid(self.shape) if self._made[1] is None else self._made[1]
+        content = self._solid or store.taken(self._key)
+        if content is not None:
+            found: Solid = _Reader(content, self.shape).load()
+            return found
+        made = solid_of(self.shape)
+        store.put(self._key, _solid_written(made))
+        store.trim()
+        return made
 
 
-def packed(made: Made) -> bytes:
-    """What the store keeps: the report can be read without the shape."""
-    shapes = pickle.dumps((made.shape, made.solid))
-    return pickle.dumps((made.report, made.shape is None, shapes))
+def stored(key: str) -> Finished | None:
+    """What the store has of a solid."""
+    content = store.taken(key)
+    return None if content is None else Finished(Packed(*pickle.loads(content), None), key)
+
+
+def _keep(packed: Packed, key: str) -> None:
+    store.put(key, pickle.dumps(packed[:3]))
+    if packed.solid is not None:
+        store.put(f"{key}-solid", packed.solid)
 
 
 @dataclass
@@ -115,14 +158,13 @@ def finished_solids(
     each instance which solid it is. `given` is what `made_part` is given beside shape and name."""
     solids, numbers = _different(instances)
     keys = [store.key_of(one.written, "solid", one.name, given) for one in solids]
-    kept = [store.taken(key) for key in keys]
-    found = [None if content is None else Finished.unpacked(content) for content in kept]
+    found = [stored(key) for key in keys]
     missing = [k for k, one in enumerate(found) if one is None]
     sizes = {k: len(solids[k].written) for k in missing}
     watch.parts, watch.making, spent = len(missing), time.perf_counter(), 0
-    for k, content, made in _made([(k, solids[k]) for k in missing], given, workers):
-        found[k] = made
-        store.put(keys[k], content)
+    for k, packed, made in _made([(k, solids[k]) for k in missing], given, workers):
+        found[k] = Finished(packed, keys[k], made)
+        _keep(packed, keys[k])
         spent += sizes[k]
         watch.done, watch.share = watch.done + 1, spent / sum(sizes.values())
     return [one for one in found if one is not None], keys, numbers
@@ -151,15 +193,15 @@ def _different(instances: Sequence[Instance]) -> tuple[list[_Solid], list[int]]:
 
 def _made(
     missing: Sequence[tuple[int, _Solid]], given: tuple[Any, ...], workers: int
-) -> Iterator[tuple[int, bytes, Finished]]:
-    """Number, bytes for the store, and what was made, in any order."""
+) -> Iterator[tuple[int, Packed, Made | None]]:
+    """Number, what was made packed, and itself where this process made it, in any order."""
     from standoff.cad.making import made_part
 
     # the first one here, so that one process compiles what is not compiled yet
     here = missing if workers == 1 else missing[:1]
     for k, solid in here:
         made = made_part(solid.shape, solid.name, *given)
-        yield k, packed(made), Finished.of(made)
+        yield k, Packed.of(made), made
     there = missing[len(here) :]
     if not there:
         return
@@ -167,11 +209,10 @@ def _made(
         running = {pool.submit(_work, one.written, one.name, given): k for k, one in there}
         while running:
             for each in wait(running, return_when=FIRST_COMPLETED).done:
-                content = result_of(each)
-                yield running.pop(each), content, Finished.unpacked(content)
+                yield running.pop(each), result_of(each), None
 
 
-def _work(written: bytes, name: str, given: tuple[Any, ...]) -> bytes:
+def _work(written: bytes, name: str, given: tuple[Any, ...]) -> Packed:
     """Make a solid in another process."""
     from OCP.BinTools import BinTools
     from OCP.TopoDS import TopoDS_Shape
@@ -181,4 +222,4 @@ def _work(written: bytes, name: str, given: tuple[Any, ...]) -> bytes:
 
     shape = TopoDS_Shape()
     BinTools.Read_s(shape, io.BytesIO(written))
-    return packed(made_part(as_its_kind(shape), name, *given))
+    return Packed.of(made_part(as_its_kind(shape), name, *given))

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from standoff.cad import store
 from standoff.cad.assembly import Assembly, Part, PartReport
 from standoff.cad.files import ENDINGS, check_lines, check_step, existing
-from standoff.cad.finished import Finished, Watch, finished_solids
+from standoff.cad.finished import Finished, Watch, finished_solids, stored
 from standoff.checks.numbers import whole_number
 from standoff.checks.real_numbers import shown
 from standoff.errors import CadError, StandoffError, StandoffTypeError
@@ -246,9 +246,8 @@ def _stored(key: str) -> Solids | None:
     if content is None:
         return None
     file_unit, placed, keys = pickle.loads(content)
-    solids = [store.taken(each) for each in keys]
-    made = [Finished.unpacked(each) for each in solids if each is not None]
-    return Solids(file_unit, placed, made, True) if len(made) == len(keys) else None
+    solids = [one for key in keys if (one := stored(key)) is not None]
+    return Solids(file_unit, placed, solids, True) if len(solids) == len(keys) else None
 
 
 def _instances(file: Path, kind: str, unit: str) -> tuple[list[Any], str]:

@@ -64,7 +64,10 @@ def run_on_assembly(command: ClearanceCommand) -> int:
 
 def _report(file: AssemblyFile, parts: dict[str, Any], within: float, wanted: Wanted) -> Report:
     try:
-        world = World(parts, within=within)
+        # beside a solid a convex part is asked as one too, which the store may have
+        mixed = not all(part.report.convex for part in parts.values())
+        bodies = {name: (part.body, part.solid if mixed else None) for name, part in parts.items()}
+        world = World({name: body for name, (body, _) in bodies.items()}, within=within)
         with progress_bar() as progress:
             answer = world.distances(file.poses(world, 0.0), progress)
     except StandoffError as error:
@@ -86,7 +89,7 @@ def _read(path: Path, workers: int) -> tuple[AssemblyFile, dict[str, Any]]:
     else:
         notes = ()
     file = AssemblyFile(path, assembly.source, assembly.unit, notes, places)
-    return file, {name: part.body for name, part in parts.items()}
+    return file, parts
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:

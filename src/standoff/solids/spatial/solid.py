@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
-from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,7 @@ from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.self_intersections import SelfIntersections, self_intersections
-from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.solid_model import SolidModel, known_model
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,14 +30,11 @@ if TYPE_CHECKING:
 # Places that a message names.
 MOST_NAMED = 3
 
-_made: WeakValueDictionary[int, Solid] = WeakValueDictionary()
-"""The solids that there are, by the identity of their boundaries, which they keep."""
-
 
 def solid_of(boundary: Boundary) -> Solid:
     """The solid of a boundary that somebody has already, or a new one; raises as `Solid` does."""
-    found = _made.get(id(boundary))
-    return Solid(boundary) if found is None else found
+    found = known_model(boundary)
+    return found if isinstance(found, Solid) else Solid(boundary)
 
 
 class Solid(SolidModel, Plotted):
@@ -86,11 +82,11 @@ class Solid(SolidModel, Plotted):
                 "boundary",
                 self.self_intersections,
             )
-        _made[id(boundary)] = self
+        self._register()
 
     def __setstate__(self, stored: Any) -> None:
         super().__setstate__(stored)
-        _made[id(self.given)] = self
+        self._register()
 
     @staticmethod
     def from_brep(
