@@ -133,9 +133,9 @@ class Part:
         return self.finished.solid
 
     @property
-    def body(self) -> Body | Solid:
-        """What a world takes: the shape where it is convex, else the solid."""
-        return self.finished.solid if not self.report.convex else self.finished.shape
+    def body(self) -> Boundary | Solid:
+        """What a world takes: the shape where it is convex, a `Body`, else the solid."""
+        return self.shape if self.report.convex else self.solid
 
 
 @dataclass(frozen=True, eq=False)

@@ -83,26 +83,32 @@ class Finished:
         self.report, self.refused, self._shape, self._solid = packed
         self._key = f"{key}-solid"
         if made is not None:  # by this process
-            self.__dict__ |= {"shape": made.shape}
-            if made.solid is not None:
-                self.__dict__ |= {"solid": made.solid}
+            self.__dict__["_both"] = made.shape, made.solid
 
-    @cached_property
+    @property
     def shape(self) -> Boundary | Body:
         """Of one that is not refused."""
-        shape: Boundary | Body = pickle.loads(self._shape)
-        return shape
+        return self._both[0]
 
     @cached_property
     def solid(self) -> Solid:
         """The shape as a `Solid`; the store has that of a convex one once it was asked for."""
+        return self._both[1] or self._solid_of(self.shape)
+
+    @cached_property
+    def _both(self) -> tuple[Boundary | Body, Solid | None]:
+        """The shape, and the solid where it is not convex."""
+        shape: Boundary | Body = pickle.loads(self._shape)
+        return shape, None if self.report.convex else self._solid_of(shape)
+
+    def _solid_of(self, shape: Boundary | Body) -> Solid:
         from standoff.solids.spatial.solid import solid_of
 
         content = self._solid or store.taken(self._key)
         if content is not None:
-            found: Solid = _Reader(content, self.shape).load()
+            found: Solid = _Reader(content, shape).load()
             return found
-        made = solid_of(self.shape)
+        made = solid_of(shape)
         store.put(self._key, _solid_written(made))
         store.trim()
         return made
@@ -111,7 +117,10 @@ class Finished:
 def stored(key: str) -> Finished | None:
     """What the store has of a solid."""
     content = store.taken(key)
-    return None if content is None else Finished(Packed(*pickle.loads(content), None), key)
+    if content is None:
+        return None
+    report, refused, shape = pickle.loads(content)
+    return Finished(Packed(report, refused, shape, None), key)
 
 
 def _keep(packed: Packed, key: str) -> None:
