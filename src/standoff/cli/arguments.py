@@ -296,6 +296,8 @@ class WarmupCommand:
 class CacheCommand:
     """Tell where finished parts of CAD files are kept and how large they are, or remove them.
 
+    Example: standoff cache --clear
+
     Exit codes: 0 done, 1 a file could not be removed, 2 bad input.
     """
 
