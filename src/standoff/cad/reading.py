@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 from standoff.cad import store
 from standoff.cad.assembly import Assembly, Part, PartReport
 from standoff.cad.files import ENDINGS, check_lines, check_step, existing
-from standoff.cad.finished import Finished, Watch, finished_solids, stored
+from standoff.cad.finished import Finished, stored
+from standoff.cad.finishing import Watch, finished_solids
 from standoff.checks.numbers import whole_number
 from standoff.checks.real_numbers import shown
 from standoff.errors import CadError, StandoffError, StandoffTypeError
@@ -25,6 +26,9 @@ UNITS = ("mm", "cm", "m", "inch")
 MOST_NAMED = 5
 FIRST_LINE = 2.0
 """Seconds after which a line says that a file is being read."""
+
+
+store.code_digest()  # now: later it may be that of sources which this process does not run
 
 
 class Options(NamedTuple):
