@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from standoff.cad import store
 from standoff.cad.finished import Finished, Packed, keep, packed, stored
+from standoff.wording import counted
 from standoff.worker_processes import result_of, worker_processes
 
 Both = tuple[Any, Any]
@@ -33,7 +34,7 @@ class Watch:
         now = time.perf_counter()
         told = f"reading {self.source}: "
         if self.parts:
-            told += f"{self.done} of {self.parts} parts made, "
+            told += f"{self.done} of {counted(self.parts, 'part')} made, "
         told += f"{now - self.began:.0f} s so far"
         if 0.0 < self.share < 1.0:
             told += f", about {(now - self.making) * (1.0 / self.share - 1.0):.0f} s left"

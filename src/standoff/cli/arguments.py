@@ -294,7 +294,7 @@ class WarmupCommand:
 
 @dataclass(frozen=True)
 class CacheCommand:
-    """Tell where finished parts of CAD files are kept and how large they are, or remove them.
+    """Tell where finished parts of CAD files are kept, and their size, or remove them.
 
     Example: standoff cache --clear
 
