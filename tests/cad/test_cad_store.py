@@ -210,7 +210,7 @@ def test_what_was_used_longest_ago_goes_first(kept: Path, monkeypatch: pytest.Mo
     assert sum(entry.size for entry in store.entries()) <= 9000
 
 
-@pytest.mark.parametrize("fault", ["too large", "a file", "others write", "full"])
+@pytest.mark.parametrize("fault", ["too large", "a file", "others write", "full", "no home"])
 def test_reading_goes_on_without_a_store(
     kept: Path,
     block: Path,
@@ -225,6 +225,10 @@ def test_reading_goes_on_without_a_store(
     elif fault == "others write":
         kept.mkdir()
         kept.chmod(0o777)
+    elif fault == "no home":
+        for name in (store.FOLDER, "NUMBA_CACHE_DIR"):
+            monkeypatch.delenv(name, raising=False)
+        monkeypatch.setattr(Path, "home", _homeless)
     else:
         monkeypatch.setattr(store, "write_whole", _no_space)
     for _ in range(2):
@@ -234,6 +238,10 @@ def test_reading_goes_on_without_a_store(
     assert ("not using the store" if fault == "others write" else "could not be kept") in told[0]
     if kept.is_dir():
         assert not list(kept.iterdir())
+
+
+def _homeless() -> Path:
+    raise RuntimeError("Could not determine home directory.")
 
 
 def _no_space(files: Any) -> None:

@@ -50,17 +50,27 @@ class Entry(NamedTuple):
 
 
 def folder() -> Path:
-    """Where the store is: what STANDOFF_CACHE_DIR or NUMBA_CACHE_DIR name, or else the user's."""
+    """Where the store is: what STANDOFF_CACHE_DIR or NUMBA_CACHE_DIR name, or else the user's.
+
+    Raises
+    ------
+    OSError
+        They name none, and the user has no home.
+    """
     if named := os.environ.get(FOLDER):
         return Path(named)
     if named := os.environ.get("NUMBA_CACHE_DIR"):
         return Path(named) / "parts"
+    try:
+        home = Path.home()
+    except RuntimeError as error:
+        raise FileNotFoundError(f"{error} Name a folder in {FOLDER}.") from error
     if sys.platform == "win32":
-        caches = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+        caches = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
     elif sys.platform == "darwin":
-        caches = Path.home() / "Library" / "Caches"
+        caches = home / "Library" / "Caches"
     else:
-        caches = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        caches = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
     return caches / "standoff" / "parts"
 
 

@@ -17,18 +17,19 @@ def run_cache(command: CacheCommand) -> int:
     Raises
     ------
     CommandError
-        The environment gives no size.
+        The environment gives no size, or no folder.
     WriteError
         If a file could not be removed.
     """
     try:
-        most = store.most_bytes()
-        removed = store.clear() if command.clear else 0
-    except StandoffError as error:
+        most, folder = store.most_bytes(), store.folder()
+    except (StandoffError, OSError) as error:
         raise CommandError(str(error)) from error
+    try:
+        removed = store.clear() if command.clear else 0
     except OSError as error:
         raise WriteError(f"not all was removed: {error}") from error
-    folder, files = store.folder(), store.entries()
+    files = store.entries()
     size = sum(entry.size for entry in files)
     if command.json:
         from standoff.cli.facts import json_text
