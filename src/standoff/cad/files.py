@@ -28,6 +28,11 @@ STEP_END = b"END-ISO-10303-21"
 CHUNK = 1 << 22
 
 
+def is_cad_file(name: str | Path) -> bool:
+    """Does its ending say so?"""
+    return Path(name).suffix.lower() in ENDINGS
+
+
 def existing(path: Any) -> Path:
     """A path to a file that is there and not empty.
 

@@ -154,9 +154,13 @@ def _placed(shape: Any, pose: Array, name: str, colour: Colour | None) -> Instan
     from OCP.TopLoc import TopLoc_Location
 
     own = matrix_of(shape.Location())
+    return Instance(name, as_its_kind(shape.Located(TopLoc_Location())), pose @ own, colour)
+
+
+def as_its_kind(shape: Any) -> Any:
+    """A shape as the solid, shell or face that it is; a compound as it is."""
     kind = next((kind for kind in KINDS if is_kind(shape, kind)), None)
-    free = shape.Located(TopLoc_Location())
-    return Instance(name, free if kind is None else cast(kind, free), pose @ own, colour)
+    return shape if kind is None else cast(kind, shape)
 
 
 def _name(label: Any) -> str:

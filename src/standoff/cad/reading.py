@@ -2,22 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import pickle
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from hashlib import file_digest
 from pathlib import Path
+from threading import Timer
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
+from standoff.cad import store
 from standoff.cad.assembly import Assembly, Part, PartReport
 from standoff.cad.files import ENDINGS, check_lines, check_step, existing
+from standoff.cad.finished import Finished, stored
+from standoff.cad.finishing import Watch, finished_solids
+from standoff.checks.numbers import whole_number
 from standoff.checks.real_numbers import shown
 from standoff.checks.units import known_unit
 from standoff.errors import CadError, StandoffError, StandoffTypeError
+from standoff.kernels.compiler.notices import alive, say
 from standoff.wording import counted
 
 MOST_NAMED = 5
+FIRST_LINE = 2.0
+"""Seconds after which a line says that a file is being read."""
 
 
-def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all") -> Assembly:
+store.code_digest()  # now: later it may be that of sources which this process does not run
+
+
+class Options(NamedTuple):
+    """What is asked of reading, checked."""
+
+    unit: str
+    heal: bool
+    keep: str
+    workers: int
+
+    @property
+    def making(self) -> tuple[Any, ...]:
+        """What a part follows from beside its shape and its name."""
+        return (self.heal,)
+
+
+class Solids(NamedTuple):
+    """What a file holds: its unit; of each instance name, pose, colour and which solid it is; the
+    solids; and whether all of it was in the store."""
+
+    file_unit: str
+    placed: list[tuple[str, Any, Any, int]]
+    solids: list[Finished]
+    stored: bool
+
+
+def read_step(
+    path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all", workers: int = 1
+) -> Assembly:
     """The parts of a STEP file, with names, colours and places.
 
     Parameters
@@ -31,6 +71,9 @@ def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     keep : "all" or "readable"
         With "all", a part that is refused is an error, and nothing is returned; with "readable" it
         is left out and told in ``refusals``.
+    workers : int
+        Processes that share the making of parts, the same ones in the same order; a program that
+        asks for more than one begins with ``if __name__ == "__main__":``.
 
     Returns
     -------
@@ -49,22 +92,17 @@ def read_step(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     StandoffError, TypeError
         An unknown unit or option; not a path.
     """
-    start = perf_counter()
-    file = existing(path)
-    checked = _checked(unit, heal, keep)
-    check_step(file)
-    from standoff.cad.instances import step_instances
-
-    instances, file_unit = step_instances(file, unit)
-    return _assembly(file.name, instances, checked, file_unit, start)
+    return _read(existing(path), "step", _checked(unit, heal, keep, workers))
 
 
-def read_iges(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all") -> Assembly:
+def read_iges(
+    path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all", workers: int = 1
+) -> Assembly:
     """The solids of an IGES file; its loose faces are sewn only with ``heal=True``.
 
     Parameters
     ----------
-    path, unit, heal, keep : as for `read_step`.
+    path, unit, heal, keep, workers : as for `read_step`.
 
     Returns
     -------
@@ -75,22 +113,15 @@ def read_iges(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "a
     CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
         As for `read_step`.
     """
-    start = perf_counter()
-    file = existing(path)
-    checked = _checked(unit, heal, keep)
-    check_lines(file, "IGES", None)
-    from standoff.cad.instances import iges_instances
-
-    instances, file_unit = iges_instances(file, unit)
-    return _assembly(file.name, instances, checked, file_unit, start)
+    return _read(existing(path), "iges", _checked(unit, heal, keep, workers))
 
 
-def read_brep(path: Any, *, heal: bool = False, keep: str = "all") -> Assembly:
+def read_brep(path: Any, *, heal: bool = False, keep: str = "all", workers: int = 1) -> Assembly:
     """The solids of a BREP file, OpenCASCADE's own, whose lengths have no unit.
 
     Parameters
     ----------
-    path, heal, keep : as for `read_step`.
+    path, heal, keep, workers : as for `read_step`.
 
     Returns
     -------
@@ -102,21 +133,17 @@ def read_brep(path: Any, *, heal: bool = False, keep: str = "all") -> Assembly:
     CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
         As for `read_step`.
     """
-    start = perf_counter()
-    file = existing(path)
-    checked = _checked("", heal, keep)
-    check_lines(file, "BREP", b"CASCADE Topology")
-    from standoff.cad.instances import brep_instances
-
-    return _assembly(file.name, brep_instances(file), checked, "", start)
+    return _read(existing(path), "brep", _checked("", heal, keep, workers))
 
 
-def read_cad(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all") -> Assembly:
+def read_cad(
+    path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "all", workers: int = 1
+) -> Assembly:
     """A file of any of these kinds, by its ending.
 
     Parameters
     ----------
-    path, unit, heal, keep : as for `read_step`; a BREP file's lengths stay as they are.
+    path, unit, heal, keep, workers : as for `read_step`; a BREP file's lengths stay as they are.
 
     Returns
     -------
@@ -129,15 +156,13 @@ def read_cad(path: Any, *, unit: str = "mm", heal: bool = False, keep: str = "al
     """
     file = existing(path)
     kind = ENDINGS.get(file.suffix.lower())
-    if kind == "brep":
-        return read_brep(file, heal=heal, keep=keep)
     if kind is None:
         raise CadError(f"{file}: give a file that ends in {', '.join(ENDINGS)}.", "path", path)
-    return (read_step if kind == "step" else read_iges)(file, unit=unit, heal=heal, keep=keep)
+    return _read(file, kind, _checked("" if kind == "brep" else unit, heal, keep, workers))
 
 
 def from_shape(
-    shape: Any, *, name: str = "part", heal: bool = False, keep: str = "all"
+    shape: Any, *, name: str = "part", heal: bool = False, keep: str = "all", workers: int = 1
 ) -> Assembly:
     """The solids of a shape of OpenCASCADE, or of an object that wraps one.
 
@@ -146,7 +171,7 @@ def from_shape(
     shape : TopoDS_Shape, or an object of build123d or CadQuery
         Its attribute ``wrapped`` is taken; of a CadQuery workplane, ``val()``.
     name : str
-    heal, keep : as for `read_step`.
+    heal, keep, workers : as for `read_step`.
 
     Returns
     -------
@@ -158,8 +183,7 @@ def from_shape(
     CadError, ModuleNotFoundError, StandoffError, TypeError
         As for `read_step`; not such an object.
     """
-    start = perf_counter()
-    checked = _checked("", heal, keep)
+    options = _checked("", heal, keep, workers)
     from standoff.cad.instances import shape_instances
 
     given = shape.val() if hasattr(shape, "val") and not hasattr(shape, "wrapped") else shape
@@ -170,59 +194,118 @@ def from_shape(
             "shape",
             shape,
         )
-    return _assembly(name, shape_instances(given, name), checked, "", start)
+    with _watched(name) as watch:
+        return _assembly(_made(shape_instances(given, name), "", options, watch), options, watch)
 
 
-def _checked(unit: str, heal: bool, keep: str) -> tuple[str, bool, str]:
+def _checked(unit: str, heal: bool, keep: str, workers: int) -> Options:
     if unit:
         known_unit(unit)
     if not isinstance(heal, bool):
         raise StandoffTypeError(f"heal = {shown(heal)}: give True or False.", "heal", heal)
     if keep not in ("all", "readable"):
         raise StandoffError(f"keep = {shown(keep)}: give 'all' or 'readable'.", "keep", keep)
-    return unit, heal, keep
+    return Options(unit, heal, keep, whole_number(workers, "workers"))
 
 
-def _assembly(
-    source: str,
-    instances: Sequence[Any],
-    options: tuple[str, bool, str],
-    file_unit: str,
-    start: float,
-) -> Assembly:
-    """Make each solid once; raise if one is refused, unless only the readable ones are wanted."""
-    from standoff.cad.making import Made, made_part
+@contextmanager
+def _watched(source: str) -> Iterator[Watch]:
+    watch = Watch(source, perf_counter())
+    first = Timer(FIRST_LINE, lambda: say(watch.line()))
+    first.daemon = True
+    with alive(watch.line):
+        first.start()
+        try:
+            yield watch
+        finally:
+            first.cancel()
 
-    unit, heal, keep = options
-    if not instances:
+
+def _read(file: Path, kind: str, options: Options) -> Assembly:
+    with _watched(file.name) as watch:
+        return _assembly(_solids_of(file, kind, options, watch), options, watch)
+
+
+def _solids_of(file: Path, kind: str, options: Options, watch: Watch) -> Solids:
+    """What the store has of a file of these bytes, or else what is made of it."""
+    key = _key(file, kind, options)
+    found = _stored(key)
+    if found is not None:
+        return found
+    instances, file_unit = _instances(file, kind, options.unit)
+    if _key(file, kind, options) != key:
+        raise CadError(f"{file} changed while it was read: read it again.")
+    return _made(instances, file_unit, options, watch, key)
+
+
+def _key(file: Path, kind: str, options: Options) -> str:
+    named = file.stem if kind == "brep" else ""  # its part has the file's name
+    with file.open("rb") as stream:
+        content = file_digest(stream, "sha256").digest()
+    return store.key_of(content, kind, named, options.unit, options.making)
+
+
+def _stored(key: str) -> Solids | None:
+    content = store.taken(key)
+    if content is None:
+        return None
+    file_unit, placed, keys = pickle.loads(content)
+    solids = [one for key in keys if (one := stored(key)) is not None]
+    return Solids(file_unit, placed, solids, True) if len(solids) == len(keys) else None
+
+
+def _instances(file: Path, kind: str, unit: str) -> tuple[list[Any], str]:
+    """The instances of a file, and its unit."""
+    if kind == "step":
+        check_step(file)
+        from standoff.cad.instances import step_instances
+
+        return step_instances(file, unit)
+    check_lines(file, kind.upper(), b"CASCADE Topology" if kind == "brep" else None)
+    from standoff.cad.instances import brep_instances, iges_instances
+
+    return iges_instances(file, unit) if kind == "iges" else (brep_instances(file), "")
+
+
+def _made(
+    instances: Sequence[Any], file_unit: str, options: Options, watch: Watch, key: str = ""
+) -> Solids:
+    """Make each solid once; `key` is the file's in the store."""
+    solids, keys, numbers = finished_solids(instances, options.making, options.workers, watch)
+    placed = [(i.name, i.pose, i.colour, k) for i, k in zip(instances, numbers, strict=True)]
+    if key and solids:
+        store.put(key, pickle.dumps((file_unit, placed, keys)))
+    store.trim()
+    return Solids(file_unit, placed, solids, False)
+
+
+def _assembly(read: Solids, options: Options, watch: Watch) -> Assembly:
+    """Raise if a part is refused, unless only the readable ones are wanted."""
+    source = watch.source
+    if not read.placed:
         raise CadError(f"{source} has no solid.")
-    kept: list[tuple[Any, Made]] = []
     parts, refusals, empty = [], [], []
-    for instance in instances:
-        made = next((m for shape, m in kept if shape.IsPartner(instance.shape)), None)
-        if made is None:
-            made = made_part(instance.shape, instance.name, heal)
-            kept.append((instance.shape, made))
+    for name, pose, colour, number in read.placed:
+        made = read.solids[number]
         if not made.report.faces:
-            empty.append(f"{instance.name}: left out, it has no face")
-            continue
-        if made.shape is None:
-            refusals.append(f"{instance.name}: {made.report.refused}")
-            continue
-        placed = instance.name, made.shape, instance.pose, instance.colour
-        parts.append(Part(*placed, made.report, made.solid))
+            empty.append(f"{name}: left out, it has no face")
+        elif made.refused:
+            refusals.append(f"{name}: {made.report.refused}")
+        else:
+            parts.append(Part(name, pose, colour, made.report, made))
     if not parts and not refusals:
         raise CadError(f"{source} has no solid with faces.")
-    if refusals and (keep == "all" or not parts):
+    if refusals and (options.keep == "all" or not parts):
         more = f"; and {len(refusals) - MOST_NAMED} more" if len(refusals) > MOST_NAMED else ""
         raise CadError(
-            f"{source}: {len(refusals)} of {counted(len(instances), 'part')} refused. "
+            f"{source}: {len(refusals)} of {counted(len(read.placed), 'part')} refused. "
             + "; ".join(refusals[:MOST_NAMED])
             + more,
             refusals=tuple(refusals),
         )
-    spent = perf_counter() - start
-    return Assembly(tuple(parts), unit, file_unit, source, (*refusals, *empty), spent)
+    left_out, spent = (*refusals, *empty), perf_counter() - watch.began
+    units = options.unit, read.file_unit
+    return Assembly(tuple(parts), *units, source, left_out, spent, read.stored)
 
 
 def reports_of(path: Any, *, heal: bool = False) -> tuple[PartReport, ...]:
@@ -242,22 +325,8 @@ def reports_of(path: Any, *, heal: bool = False) -> tuple[PartReport, ...]:
     CadError, FileNotFoundError, ModuleNotFoundError, TypeError
         As for `read_step`, but for parts that are refused.
     """
-    file: Path = existing(path)
-    from standoff.cad.instances import brep_instances, iges_instances, step_instances
-    from standoff.cad.making import made_part
-
-    kind = ENDINGS.get(file.suffix.lower())
-    if kind == "step":
-        check_step(file)
-        instances = step_instances(file, "mm")[0]
-    elif kind == "iges":
-        instances = iges_instances(file, "mm")[0]
-    else:
-        instances = brep_instances(file)
-    seen: list[Any] = []
-    found = []
-    for instance in instances:
-        if not any(instance.shape.IsPartner(one) for one in seen):
-            seen.append(instance.shape)
-            found.append(made_part(instance.shape, instance.name, heal).report)
-    return tuple(found)
+    file = existing(path)
+    kind = ENDINGS.get(file.suffix.lower(), "brep")
+    options = _checked("" if kind == "brep" else "mm", heal, "all", 1)
+    with _watched(file.name) as watch:
+        return tuple(one.report for one in _solids_of(file, kind, options, watch).solids)

@@ -134,6 +134,8 @@ class ClearanceCommand:
     allow: Annotated[Path | None, arg(metavar="FITS.toml", help_behavior_hint="")] = None
     """Contacts that are meant; docs/clearance.md describes the format."""
     meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
+    workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
+    """Processes that share the reading of an assembly's parts; 1 if not given."""
     files: Annotated[ClearanceFiles, group("file")] = ClearanceFiles()
     report: Annotated[ReportFlags, group("report")] = AS_USUAL
 
@@ -157,6 +159,8 @@ class CheckCommand:
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Draw the body with its features and normals, or a CAD file's part with its edges by kind, to
     this file (.png, .svg or .pdf); with several, each gets its own, OUT-NAME.png."""
+    workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
+    """Processes that share the reading of a CAD file's parts; 1 if not given."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the report as JSON."""
 
@@ -295,6 +299,21 @@ class WarmupCommand:
 
 
 @dataclass(frozen=True)
+class CacheCommand:
+    """Tell where finished parts of CAD files are kept, and their size, or remove them.
+
+    Example: standoff cache --clear
+
+    Exit codes: 0 done, 1 a file could not be removed, 2 bad input.
+    """
+
+    clear: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Remove all of them: the next reading of each file makes its parts again."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print it as JSON."""
+
+
+@dataclass(frozen=True)
 class LibraryCommand:
     """Build the shared library and the header for programs in C and C++.
 
@@ -329,6 +348,7 @@ Command = (
     | SweepCommand
     | ServoCommand
     | WarmupCommand
+    | CacheCommand
     | LibraryCommand
     | AddedCommand
 )
@@ -347,6 +367,7 @@ OWN: dict[str, type] = {
     "sweep": SweepCommand,
     "servo": ServoCommand,
     "warmup": WarmupCommand,
+    "cache": CacheCommand,
     "c-library": LibraryCommand,
 }
 """The library's own commands, by name."""

@@ -15,7 +15,6 @@ from standoff import __version__
 from standoff.bodies.body import Body
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.body_report import planar_rows, report_rows, solid_rows
-from standoff.cli.check_cad import is_cad_file, run_check_cad
 from standoff.cli.errors import ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
@@ -39,8 +38,6 @@ def run_check(command: CheckCommand) -> int:
     WriteError
         If a picture could not be written.
     """
-    if is_cad_file(command.what):
-        return run_check_cad(command)
     check_meshes(Path(command.what), command.meshes)
     found = subjects(command)
     files = _files(found, command.plot)

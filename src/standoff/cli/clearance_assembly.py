@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from standoff.cad import read_cad
+from standoff.checks.units import conversion
 from standoff.clearance.assembly import AssemblyFile
 from standoff.clearance.facts import report_facts
 from standoff.clearance.fits import load_fits
@@ -50,12 +51,9 @@ def run_on_assembly(command: ClearanceCommand) -> int:
     wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
     check_files(command)
     if is_part_file(command.scene):
-        read = parts_of(command.scene, command.meshes)
-        places = {name: part.pose for name, part in read.found.items()}
-        parts = {name: part.shape for name, part in read.found.items()}
-        file = AssemblyFile(command.scene, command.scene.name, read.unit, read.notes, places)
+        file, parts = _read_parts(command)
     else:
-        file, parts = _read(command.scene)
+        file, parts, _solids = _read(command)  # the world finds these as long as they are here
     within = math.inf if command.within is None else command.within
     if command.min is not None:
         within = max(within, command.min)
@@ -80,20 +78,30 @@ def _report(file: AssemblyFile, parts: dict[str, Any], within: float, wanted: Wa
     return report_on(world, near, bounds_of(world, answer, near), wanted)
 
 
-def _read(path: Path) -> tuple[AssemblyFile, dict[str, Any]]:
-    """The file, and the parts in their own frames."""
+def _read_parts(command: ClearanceCommand) -> tuple[AssemblyFile, dict[str, Any]]:
+    """A file of a drawing or of meshes, and its parts in their own frames."""
+    read = parts_of(command.scene, command.meshes)
+    places = {name: part.pose for name, part in read.found.items()}
+    parts = {name: part.shape for name, part in read.found.items()}
+    return AssemblyFile(command.scene, command.scene.name, read.unit, read.notes, places), parts
+
+
+def _read(command: ClearanceCommand) -> tuple[AssemblyFile, dict[str, Any], list[Any]]:
+    """A CAD file, its parts in their own frames, and their solids where some are not convex:
+    beside these convex parts are asked as solids too, which the store may have."""
     try:
-        assembly = read_cad(path)
+        assembly = read_cad(command.scene, workers=command.workers)
         parts = assembly.by_name
         places = {name: Pose.of(part.pose) for name, part in parts.items()}
+        bodies = {name: part.body for name, part in parts.items()}
+        mixed = not all(part.report.convex for part in parts.values())
+        solids = [part.solid for part in parts.values()] if mixed else []
     except (StandoffError, OSError) as error:
         raise CommandError(str(error)) from error
-    if assembly.file_unit and assembly.file_unit != assembly.unit:
-        notes: tuple[str, ...] = (f"lengths were converted from {assembly.file_unit}",)
-    else:
-        notes = ()
-    file = AssemblyFile(path, assembly.source, assembly.unit, notes, places)
-    return file, {name: part.shape for name, part in parts.items()}
+    converted = conversion(assembly.unit, assembly.file_unit)
+    notes = (f"lengths were {converted}",) if converted else ()
+    file = AssemblyFile(command.scene, assembly.source, assembly.unit, notes, places)
+    return file, bodies, solids
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:

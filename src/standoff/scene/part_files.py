@@ -145,7 +145,7 @@ def _read(
     from standoff.cad.reading import read_cad
 
     read = read_cad(path, unit=unit, heal=heal, keep="readable")
-    parts = {name: from_file(name, part.shape, part.pose) for name, part in read.by_name.items()}
+    parts = {name: from_file(name, part.body, part.pose) for name, part in read.by_name.items()}
     return _told(parts, read.unit, read.file_unit, ())._replace(refusals=read.refusals)
 
 
