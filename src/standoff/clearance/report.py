@@ -393,7 +393,8 @@ def _far_failure(
     if fit is not None:
         if bound <= fit.gap[1]:
             return ""
-        return f"at least {at_least(bound)} apart, and {fit.allowance()} is meant"
+        told = f"more than is allowed: at least {at_least(bound)}"
+        return f"a gap {told}, and {fit.allowance()} is meant"
     required = _required(world, names, wanted)
     return "" if required is None or bound >= required else not_kept(required, bound)
 
