@@ -53,7 +53,7 @@ def meant(a: str, b: str, low: float, high: float = math.inf) -> Wanted:
 LATTICE = {f"ball {k}": at for k, at in enumerate(product((0.0, 2.5, 5.0), repeat=3))}
 GAPS = {(a, b): math.dist(LATTICE[a], LATTICE[b]) - 2.0 for a in LATTICE for b in LATTICE if a < b}
 NEIGHBOURS = {names for names, gap in GAPS.items() if gap < 0.6}
-HEAD = ("washer 1", "bolt"), ("washer 2", "bolt"), ("washer 3", "bolt")
+HEAD = ("washer 1", "bolt"), ("washer 2", "bolt")
 IN_HOLE, BESIDE = ("plate", "bolt"), ("one", "two")
 ASSEMBLIES = {
     "boxes in a row": Assembly(
@@ -94,12 +94,12 @@ ASSEMBLIES = {
     ),
     "washers by a pattern": Assembly(
         {"bolt": ("bolt", (0.0, 0.0, 0.0))}
-        | {f"washer {k}": ("washer", (0.01 * k, 0.0, 0.6 * k)) for k in (1, 2, 3)},
+        | {f"washer {k}": ("washer", (0.01 * k, 0.0, 1.2 * k)) for k in (1, 2)},
         {pair: (APART, 0.1 - 0.01 * k) for k, pair in enumerate(HEAD, 1)}
-        | {("washer 1", "washer 2"): (APART, 0.2)},
+        | {("washer 1", "washer 2"): (APART, 0.8)},
         [
-            (meant("washer [1-3]", "bolt", 0.07, 0.09), set()),
-            (meant("w*", "bolt", 0.075, 0.085), {HEAD[0], HEAD[2]}),
+            (meant("washer [12]", "bolt", 0.08, 0.09), set()),
+            (meant("w*", "bolt", 0.075, 0.085), {HEAD[0]}),
             (Wanted(0.1, (Fit("w*", "bolt", (0.05, 0.1), "meant"),)), set()),
         ],
     ),
