@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
 from standoff.cad.files import ENDINGS
-from standoff.clearance.check import Scope, check, narrowed
+from standoff.clearance.check import check, narrowed
 from standoff.clearance.facts import report_facts
-from standoff.clearance.fits import load_fits
 from standoff.clearance.over_time import bounds_over, walk
 from standoff.clearance.report import Looked, Report, Wanted, report_on
 from standoff.cli.arguments import ClearanceCommand
 from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
+from standoff.cli.clearance_options import check_options, option_error, scope_of, wanted_by
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text, world_facts
 from standoff.cli.output import write_whole
@@ -35,7 +34,7 @@ def run_clearance(command: ClearanceCommand) -> int:
     WriteError
         If the files could not be written after all.
     """
-    _check(command)
+    check_options(command)
     if command.scene.suffix.lower() in ENDINGS:
         from standoff.cli.clearance_assembly import run_on_assembly
 
@@ -53,35 +52,6 @@ def run_clearance(command: ClearanceCommand) -> int:
         listed = None if command.report.verbose else scope_of(command).closest
         print_report(scene, report, looked, written, listed)
     return ExitCode.NOT_CERTIFIED if report.failures else ExitCode.DONE
-
-
-def _check(command: ClearanceCommand) -> None:
-    """Refuse numbers that are none, and options that do not go together.
-
-    Raises
-    ------
-    CommandError
-    """
-    for value, name in ((command.min, "--min"), (command.min_tolerance, "--min-tolerance")):
-        if value is not None and not 0.0 <= value < math.inf:
-            raise CommandError(f"{name}: must be zero or more and finite, got {value}")
-    if command.scope.within is not None and not command.scope.within > 0.0:
-        raise CommandError(f"--within: must be above zero, got {command.scope.within}")
-    if command.scope.closest is not None and command.scope.closest < 1:
-        raise CommandError(f"--closest: must be one or more, got {command.scope.closest}")
-    if command.motion and command.time is not None:
-        raise CommandError("--time and --motion: give one of them, an instant or all frames")
-
-
-def wanted_by(command: ClearanceCommand) -> Wanted:
-    """What a command asks of the pairs."""
-    fits = None if command.allow is None else load_fits(command.allow)
-    return Wanted(command.min, fits, command.min_tolerance)
-
-
-def scope_of(command: ClearanceCommand) -> Scope:
-    """Which pairs a command looks at."""
-    return Scope(**{key: value for key, value in vars(command.scope).items() if value is not None})
 
 
 def _looked(
@@ -107,12 +77,6 @@ def _looked(
     except (ValueError, TypeError) as error:
         raise option_error(error) or SceneError(str(error), key="world", file=scene.file) from error
     return report, Looked(time, time, 1)
-
-
-def option_error(error: Exception) -> CommandError | None:
-    """The error of an option that selects pairs; None of another one."""
-    selects = getattr(error, "argument", "") in ("parts", "pairs")
-    return CommandError(f"--{error}") if selects else None
 
 
 def _facts(scene: Scene, report: Report, looked: Looked, written: list[Path]) -> dict[str, Any]:

@@ -11,9 +11,9 @@ from standoff.clearance.check import Scope, check
 from standoff.clearance.facts import report_facts
 from standoff.clearance.report import Looked, Report, Wanted
 from standoff.cli.arguments import ClearanceCommand
-from standoff.cli.clearance import option_error, scope_of, wanted_by
 from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
+from standoff.cli.clearance_options import option_error, scope_of, wanted_by
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
 from standoff.cli.output import write_whole
