@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import product
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,9 +12,12 @@ import pytest
 
 import standoff as so
 from on_first_use import OnFirstUse
+from standoff.clearance.assembly import AssemblyFile
+from standoff.clearance.assembly_picture import assembly_figure
 from standoff.clearance.check import Scope, check
 from standoff.clearance.fits import Fit
-from standoff.clearance.report import Report, Wanted
+from standoff.clearance.page import page_of
+from standoff.clearance.report import Looked, Report, Wanted
 from standoff.clearance.verdicts import Verdict
 from standoff.solids import Solid
 from standoff_studies.soak.solid_parts import bolt, bracket, hollow, plate, ring
@@ -178,3 +182,18 @@ def test_the_verdicts_of_an_assembly(name: str, scope: str) -> None:
 def verdict_needs_no_distance(wanted: Wanted, scope: str) -> bool:
     """Is the horizon that of the clearance that is asked?"""
     return bool(wanted.least) and scope != "all"
+
+
+def test_the_page_tells_of_cavities_and_has_the_files_colours() -> None:
+    assembly = ASSEMBLIES["a bead in a cavity"]
+    report = reported(assembly, Wanted(0.4), Scope(within=1.0))
+    places = {name: so.Pose(np.eye(3), at) for name, (_, at) in assembly.parts.items()}
+    blue = (0.0, 0.0, 1.0)
+    file = AssemblyFile(Path("a.step"), "A bead", "mm", (), places, {"bead": blue})
+    assert "<br>bead, in a cavity</td>" in page_of(file, report, Looked(0.0, 0.0, 1))
+    figure = assembly_figure(report, places, "mm", file.colours)
+    patches = {
+        patch.get_label(): patch.get_facecolor() for patch in figure.legends[0].get_patches()
+    }
+    assert patches["bead"][:3] == blue
+    assert patches["hollow"][:3] != blue
