@@ -661,6 +661,7 @@ def test_without_a_horizon_as_many_pairs_as_are_asked_have_distances(
     assert 2 <= len(facts["pairs"]) <= 3
     assert {("ball", "pair_of_balls"), ("table", "ball")} <= set(by_name(facts))
     assert facts["far"]["at_least"] >= facts["within"] > 0.0
+    assert {*TRUTH} <= set(by_name(facts_of(standoff, scene, "--closest", 3)))
     assert facts_of(standoff, scene, "--closest", 2, "--within", "inf")["far"]["count"] == 0
     # what is asked needs no more than that
     facts = facts_of(standoff, scene, "--min", 0.3)

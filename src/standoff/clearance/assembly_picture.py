@@ -63,13 +63,13 @@ def assembly_figure(
     axes.view_init(*USUAL_VIEW)
     axes.set_proj_type("ortho")
     parts = parts_of(report.world, poses, coloured)
-    colours = {name: colour_of(name, coloured) for name in coloured} | dict(colours)
-    _draw_parts(axes, parts, rows, coloured, colours, towards)
+    shown: dict[str, Any] = {name: colour_of(name, coloured) for name in coloured} | dict(colours)
+    _draw_parts(axes, parts, rows, coloured, shown, towards)
     ends = _draw_pairs(axes, rows)
     clouds = [np.asarray(part.pose.apply(part.solid.points)) for part in parts]
     frame(axes, seen_from(np.concatenate([*clouds, *ends]), towards), 0.0, towards, unit)
     look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
-    figure.legend(handles=bodies_legend(coloured, colours), loc="lower left", ncols=2, **look)
+    figure.legend(handles=bodies_legend(coloured, shown), loc="lower left", ncols=2, **look)
     figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
     return figure
 

@@ -102,7 +102,8 @@ def narrowed(world: World, scope: Scope, wanted: Wanted) -> World:
     for value, name in ((wanted.least, "least"), (wanted.tolerance, "tolerance")):
         if value is not None:
             not_negative(value, name)
-    parts, changes = _each(scope.parts or ["*"], world.bodies, "parts"), {}
+    parts = _each(scope.parts or ["*"], world.bodies, "parts")
+    changes: dict[str, Any] = {}
     if scope.pairs:
         sides = [[_each([x], world.bodies, "pairs") for x in pair] for pair in scope.pairs]
         changes["only"] = [

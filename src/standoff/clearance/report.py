@@ -415,11 +415,11 @@ def _note(
             found.append((row.names, told))
     for each in far:
         if of_far.get(each.names) is fit:
-            loose = f"not in contact: at least {at_least(each.bound)} apart"
-            found.append((each.names, loose if fit.contact else each.failure))
+            told = f"not in contact: at least {at_least(each.bound)} apart"
+            found.append((each.names, told if fit.contact else each.failure))
     if not found:
         alone = fit_of([fit], world.bodies)
-        taken = any(alone(each.names) for each in (*rows, *far))
+        taken = any(map(alone, [row.names for row in rows] + [each.names for each in far]))
         other = (
             f"the pair {'is that of an earlier fit' if taken else 'does not count in this world'}"
         )

@@ -161,7 +161,7 @@ class WorldAnswer(KeepsReadOnly):
             bound = max(bound, known if whole else min(known, search.reach))
         else:
             bound = max(bound, search.reach)
-        return bound
+        return float(bound)
 
     def __repr__(self) -> str:
         return f"<WorldAnswer: {len(self.pairs)} near pairs, clearance {self.clearance:.6g}>"

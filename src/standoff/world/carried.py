@@ -152,8 +152,10 @@ def carried_table(
     ints[turned | (not keeps_rows), W.I_ROW] = -1
     order = np.argsort(ints[:, W.I_KEY], kind="stable")
     keys = dict(zip(old_keys, ints[:, W.I_KEY].tolist(), strict=True))
-    pieces, fronts = (
-        {keys[key]: found for key, found in kept.items() if key in keys}
-        for kept in (before.solids.pieces, before.solids.fronts)
+    found, fronts = before.solids.pieces, before.solids.fronts
+    kept = KeptSolids(
+        {keys[key]: found[key] for key in keys.keys() & found.keys()},
+        {},
+        {keys[key]: fronts[key] for key in keys.keys() & fronts.keys()},
     )
-    return Table(ints[order], known[order]), KeptSolids(pieces, {}, fronts)
+    return Table(ints[order], known[order]), kept
