@@ -207,6 +207,7 @@ def test_every_package_that_should_imports_on_demand() -> None:
         *("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking"),
         *("automaton", "impact", "points", "recording", "simulation", "voronoi"),
         *("devices", "servo", "view", "world", "robots", "solids", "cad", "scene", "sweep"),
+        "clearance",
     )
     assert set(FILES) == {name if name == "standoff" else f"standoff.{name}" for name in names}
 

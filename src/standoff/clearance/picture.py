@@ -107,7 +107,8 @@ def world_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure
     else:
         _draw_spatial(figure, parts, looks, rows, unit)
     look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
-    figure.legend(handles=bodies_legend(coloured), loc="lower left", ncols=2, **look)
+    own = {name: colour_of(name, coloured) for name in coloured}
+    figure.legend(handles=bodies_legend(coloured, own), loc="lower left", ncols=2, **look)
     figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
     return figure
 
@@ -276,8 +277,8 @@ def _draw_planar(
     axes.grid(alpha=0.3)
 
 
-def bodies_legend(coloured: Sequence[str]) -> list[Artist]:
-    return [Patch(facecolor=colour_of(name, coloured), label=short_name(name)) for name in coloured]
+def bodies_legend(coloured: Sequence[str], colours: Mapping[str, Any]) -> list[Artist]:
+    return [Patch(facecolor=colours[name], label=short_name(name)) for name in coloured]
 
 
 def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:

@@ -10,7 +10,14 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
-from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subcommand
+from tyro.conf import (
+    FlagCreatePairsOff,
+    OmitArgPrefixes,
+    Positional,
+    UseAppendAction,
+    arg,
+    subcommand,
+)
 
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
@@ -112,6 +119,29 @@ class ClearanceFiles:
 
 
 @dataclass(frozen=True)
+class PairFlags:
+    """Which pairs are looked at, and how far."""
+
+    within: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Horizon: of pairs that are farther apart only that is proven. If not given, the scene's; else
+    --min; else as far as the closest pairs are."""
+    closest: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
+    """How many pairs these are, at least, and how many are listed without --verbose; 40 if not
+    given."""
+    parts: Annotated[
+        UseAppendAction[tuple[str, ...]], arg(metavar="NAME", help_behavior_hint="")
+    ] = ()
+    """Only bodies of this name, which may have wildcards, such as 'bolt*'; may be given again."""
+    pairs: Annotated[
+        UseAppendAction[tuple[tuple[str, str], ...]], arg(metavar="A B", help_behavior_hint="")
+    ] = ()
+    """Only pairs of a body A and a body B, as --parts; may be given again."""
+
+
+ALL_PAIRS = PairFlags()
+
+
+@dataclass(frozen=True)
 class ClearanceCommand:
     """Report the proven clearance of all pairs of a scene's bodies or a file's parts.
 
@@ -127,12 +157,13 @@ class ClearanceCommand:
     """Scene time in s; the first frame's if not given."""
     motion: Annotated[bool, arg(help_behavior_hint="")] = False
     """Over all frames of the scene's times: the least of each pair, and when."""
-    within: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
-    """Horizon: of pairs that are farther apart only that is proven; the scene's if not given."""
+    scope: Annotated[PairFlags, group("pair")] = ALL_PAIRS
     min: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
     """The clearance that every pair must keep; margins in the scene hold besides."""
+    min_tolerance: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """By how much what is proven may miss it; the touching tolerance of the parts if not given."""
     allow: Annotated[Path | None, arg(metavar="FITS.toml", help_behavior_hint="")] = None
-    """Contacts that are meant; docs/clearance.md describes the format."""
+    """Fits that are meant; docs/clearance.md describes the format."""
     meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
     """Processes that share the reading of an assembly's parts; 1 if not given."""
