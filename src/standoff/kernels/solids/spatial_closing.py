@@ -10,6 +10,7 @@ from standoff.kernels.solids.coaxial import (
     coaxial_between,
     common_axis,
     in_meridian,
+    is_flat,
     straight_about,
 )
 from standoff.kernels.solids.screw import common_screw, screw_between
@@ -71,8 +72,8 @@ MOST_PAIRS = 200
 FEW_BOXES, MOST_BOXES = 20, 400
 # Cuts of a pair of leaves after which it counts as hard.
 EASY_CUTS = 16
-# The same, of a potential that does for whole pieces of a thread.
-SCREW_BOXES = 150
+# The same, of a potential that does for whole pieces of a thread, and of a flat end in its bore.
+SCREW_BOXES, AXIS_BOXES = 150, 150
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
 SCREWED = 7
 ALL_WAYS = (0, SCREWED)
@@ -99,6 +100,18 @@ def by_own_surface(goal, a, b, q, limit, counts):
     """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
     known, phi = natural(a.side, a.leaf)
     return known and proven(phi, -1.0, -goal, b, q, limit, counts)
+
+
+@kernel
+def dim_of(side, leaf):
+    return side.own[leaf_ints(side, leaf) + S.DIM]
+
+
+@kernel
+def ends_sharply(part):
+    """Does a part end at a rim, as an edge or a flat face does, so that a potential about its axis
+    may have any curvature across the rim?"""
+    return dim_of(part.side, part.leaf) == 1 or is_flat(part.side, part.leaf)
 
 
 @shared
@@ -136,10 +149,10 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     turned, point, axis = common_axis(a, b, n, size)
     known, meridian = in_meridian(x, y, n, point, axis)
     turned = turned and known
-    # of parts that go on about the axis from those whose points these are
-    if turned and not here and first <= 1:
+    # of rims, and of parts that go on about the axis from those whose points these are
+    if turned and first <= 1 and (not here or ends_sharply(a) or ends_sharply(b)):
         phi = straight_about(meridian)
-        if by_one(phi, goal, a, b, place, counts):
+        if by_one(phi, goal, a, b, (here, q, x, y, max(limit, AXIS_BOXES)), counts):
             return 1, phi
     for way in range(max(first, 1), min(last, SCREWED - 1) + 1):
         if is_stopped(best, counts):
@@ -368,11 +381,6 @@ def put_halves(a, b, best, work, count, low):
         put_pair(work, count, a.box, first, low)
         put_pair(work, count + 1, a.box, second, low)
     return count + 2
-
-
-@kernel
-def dim_of(side, leaf):
-    return side.own[leaf_ints(side, leaf) + S.DIM]
 
 
 @kernel
