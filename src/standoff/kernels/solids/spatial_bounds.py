@@ -46,6 +46,7 @@ from standoff.kernels.solids.spatial_pieces import (
 )
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
+    CONE_OF,
     THIRD,
     TORUS_THROUGH,
     form,
@@ -149,7 +150,11 @@ def likely_third(phi, side, leaf, x, reach, thirds):
         d = differences(phi, x, reach, e, w)
         if d[0] < inf:
             t = third_bounds(m, o, d)
-            thirds = lesser(thirds, (t[0], t[1], t[2], thirds[3]))
+            along = thirds[3]
+            if phi.kind in (AXIS_OF, CONE_OF):
+                # the moved one is linear in each half plane from the axis, where v runs
+                along = t[3] + m[o + S.THIRDS + 3]
+            thirds = lesser(thirds, (t[0], t[1], t[2], along))
     return thirds
 
 
