@@ -9,9 +9,18 @@ from standoff.kernels.algebra.vectors import add, axpy, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.round_axis import arc_axis, arc_offset
-from standoff.kernels.solids.spatial_likeness import off_axis, turning
-from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints
-from standoff.kernels.solids.spatial_tolerances import NEARLY_COAXIAL, NEARLY_STRAIGHT
+from standoff.kernels.solids.spatial_likeness import (
+    moved_line,
+    off_axis,
+    own_kind,
+    turning,
+)
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, leaf_reals
+from standoff.kernels.solids.spatial_tolerances import (
+    ALONG_OWN,
+    NEARLY_COAXIAL,
+    NEARLY_STRAIGHT,
+)
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
     CIRCLE_OF,
@@ -151,12 +160,39 @@ def in_meridian(x, y, n, point, axis):
 
 
 @kernel
+def own_straight(side, leaf, at, n):
+    """(known, potential) of the cylinder or the cone that a leaf lies on, along n: exact, where a
+    normal between two points has as few digits as they are near."""
+    kind = own_kind(side, leaf)
+    if kind not in (AXIS_OF, CONE_OF):
+        return False, NO_POTENTIAL
+    o, m = leaf_reals(side, leaf) + S.NATURAL_REALS, side.numbers
+    point, axis = moved_line(side, o + 3)
+    slope = dot(at.out, n)
+    if kind == CONE_OF:
+        slope = m[o + 1] * slope - m[o + 2] * dot(axis, n)
+    sign = 1.0 if slope > 0.0 else -1.0
+    phi = Potential(kind, point, ZERO, ZERO, axis, m[o + 1], m[o + 2], sign)
+    return abs(slope) >= 1.0 - ALONG_OWN, phi
+
+
+@kernel
 def straight_about(at):
     """A potential that is constant on a cone about a line, or on a cylinder."""
     if at.nz == 0.0:
         return Potential(AXIS_OF, at.point, ZERO, ZERO, at.axis, 0.0, 0.0, at.nr)
     foot = axpy(at.z, at.axis, at.point)
     return Potential(CONE_OF, foot, ZERO, ZERO, at.axis, at.nr, -at.nz, 1.0)
+
+
+@kernel
+def straight_through(a, leaf_a, b, leaf_b, at, n):
+    """The same through two points: that of a leaf of theirs if there is one."""
+    known, phi = own_straight(a, leaf_a, at, n)
+    if known:
+        return phi
+    known, phi = own_straight(b, leaf_b, at, n)
+    return phi if known else straight_about(at)
 
 
 @kernel

@@ -11,7 +11,7 @@ from standoff.kernels.solids.coaxial import (
     common_axis,
     in_meridian,
     is_flat,
-    straight_about,
+    straight_through,
 )
 from standoff.kernels.solids.screw import common_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
@@ -151,7 +151,7 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     turned = turned and known
     # of rims, and of parts that go on about the axis from those whose points these are
     if turned and first <= 1 and (not here or ends_sharply(a) or ends_sharply(b)):
-        phi = straight_about(meridian)
+        phi = straight_through(a.side, wa, b.side, wb, meridian, n)
         if by_one(phi, goal, a, b, (here, q, x, y, max(limit, AXIS_BOXES)), counts):
             return 1, phi
     for way in range(max(first, 1), min(last, SCREWED - 1) + 1):
