@@ -14,7 +14,7 @@ import standoff as so
 from on_first_use import OnFirstUse
 from standoff.clearance.assembly import AssemblyFile
 from standoff.clearance.assembly_picture import assembly_figure
-from standoff.clearance.check import Scope, check
+from standoff.clearance.checked_pairs import Scope, check
 from standoff.clearance.fits import Fit
 from standoff.clearance.page import page_of
 from standoff.clearance.report import Looked, Report, Wanted

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from standoff.clearance.check import check, narrowed
+from standoff.clearance.checked_pairs import check, narrowed
 from standoff.clearance.facts import report_facts
 from standoff.clearance.over_time import bounds_over, walk
 from standoff.clearance.report import Looked, Report, Wanted, report_on

@@ -8,7 +8,7 @@ from typing import Any
 from standoff.cad import read_cad
 from standoff.checks.units import conversion
 from standoff.clearance.assembly import AssemblyFile
-from standoff.clearance.check import Scope, check
+from standoff.clearance.checked_pairs import Scope, check
 from standoff.clearance.facts import report_facts
 from standoff.clearance.report import Looked, Report, Wanted
 from standoff.cli.arguments import ClearanceCommand

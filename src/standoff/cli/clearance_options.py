@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from standoff.clearance.check import Scope
+from standoff.clearance.checked_pairs import Scope
 from standoff.clearance.fits import load_fits
 from standoff.clearance.report import Wanted
 from standoff.cli.arguments import ClearanceCommand
