@@ -335,7 +335,7 @@ def test_the_front_is_small() -> None:
     assert len(so.__all__) <= 38
     shown = {name for name in dir(so) if not name.startswith("__")}
     modules = (
-        *("automaton", "bodies", "cad", "control", "devices", "geometry", "impact"),
+        *("automaton", "bodies", "cad", "clearance", "control", "devices", "geometry", "impact"),
         *("motion", "points", "recording", "robots", "scene", "servo", "simulation"),
         *("solids", "tracking", "voronoi", "world"),
     )
