@@ -206,7 +206,8 @@ def test_every_package_that_should_imports_on_demand() -> None:
     names = (
         *("standoff", "bodies", "bodies.shapes", "geometry", "motion", "tracking"),
         *("automaton", "impact", "points", "recording", "simulation", "voronoi"),
-        *("devices", "servo", "view", "world", "robots", "solids", "cad", "sweep"),
+        *("devices", "servo", "view", "world", "robots", "solids", "cad", "scene", "sweep"),
+        "clearance",
     )
     assert set(FILES) == {name if name == "standoff" else f"standoff.{name}" for name in names}
 
@@ -334,7 +335,7 @@ def test_the_front_is_small() -> None:
     assert len(so.__all__) <= 38
     shown = {name for name in dir(so) if not name.startswith("__")}
     modules = (
-        *("automaton", "bodies", "cad", "control", "devices", "geometry", "impact"),
+        *("automaton", "bodies", "cad", "clearance", "control", "devices", "geometry", "impact"),
         *("motion", "points", "recording", "robots", "scene", "servo", "simulation"),
         *("solids", "tracking", "voronoi", "world"),
     )

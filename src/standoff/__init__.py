@@ -3,7 +3,7 @@
 The names of every day; the rest is in modules that load when asked for: `so.points`, `so.voronoi`,
 `so.impact`, `so.recording`, `so.automaton`, `so.bodies`, `so.geometry`, `so.motion`, `so.tracking`,
 `so.control`, `so.simulation`, `so.devices`, `so.servo`, `so.scene`, `so.world`, `so.robots`,
-`so.solids`, `so.cad`.
+`so.solids`, `so.cad`, `so.clearance`.
 """
 
 from typing import TYPE_CHECKING
@@ -96,6 +96,7 @@ else:
             "automaton",
             "bodies",
             "cad",
+            "clearance",
             "control",
             "devices",
             "geometry",

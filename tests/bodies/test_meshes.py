@@ -84,7 +84,7 @@ def test_a_mesh_of_separate_triangles_facing_inward_is_read(rng: np.random.Gener
     body = so.Body.from_mesh((loose, np.arange(len(loose)).reshape(-1, 3)))
     assert body.n_vertices == len(points)
     merged, turned = body.check().notes
-    assert merged == f"{len(loose) - len(points)} points equal to others are one with them"
+    assert merged == f"{len(loose) - len(points)} points within 1e-12 of others are one with them"
     assert turned == "all triangles face inward: turned outward"
     # each corner rounded in its own way, as programs that write triangle by triangle do
     bent = loose * (1.0 + rng.choice([-1.0, 0.0, 1.0], loose.shape) * np.finfo(float).eps)

@@ -219,16 +219,22 @@ def test_a_margin_of_the_scene_must_hold(standoff: Standoff, scene: Path) -> Non
 
 
 @pytest.mark.parametrize("short", [1e-12, 1e-10])
-def test_a_nominal_gap_fails_by_little_and_says_so(
+def test_a_nominal_gap_is_kept_within_the_tolerance(
     standoff: Standoff, scene: Path, tmp_path: Path, short: float
 ) -> None:
     # The pair of balls is 0.5 above the table, less a little: what is asked is not quite there.
     lower = SCENE.replace("position = [3.25, 0.0, 1.0]", f"position = [3.25, 0.0, {1.0 - short!r}]")
     scene.write_text(lower.replace("within = 5.0", 'within = 5.0\nignore = [["ball", "moon"]]'))
     page = tmp_path / "page.html"
-    ended = standoff("clearance", scene, "--min", 0.5, "--page", page)
+    facts = facts_of(standoff, scene, "--min", 0.5, "--page", page)
+    assert by_name(facts)["table", "pair_of_balls"]["failure"] is None
+    assert short <= facts["min_missed_by"] <= 2.0 * short
+    assert "1 pair within the tolerance, less at most" in page.read_text("utf-8")
+    strict = "--min-tolerance", 0
+    ended = standoff("clearance", scene, "--min", 0.5, "--page", page, *strict)
     assert ended.code == 3
-    pair = by_name(facts_of(standoff, scene, "--min", 0.5))["table", "pair_of_balls"]
+    pair = by_name(facts_of(standoff, scene, "--min", 0.5, *strict))["table", "pair_of_balls"]
+    assert pair["tolerance"] == 0.0
     assert 0.5 - pair["least_lower_bound"] == pytest.approx(short, rel=0.1)
     told = re.search(
         r"table - pair_of_balls: not proven to keep 0\.5: at least (\S+) apart, (\S+) too little, "
@@ -243,7 +249,7 @@ def test_a_nominal_gap_fails_by_little_and_says_so(
     assert slack <= pair["touching_within"] <= tolerance
     assert "too little, within the touching tolerance" in page.read_text("utf-8")
     assert 0.5 - tolerance - 1e-9 <= ask < 0.5  # nine digits
-    report = standoff("clearance", scene, "--min", ask, "--json").out
+    report = standoff("clearance", scene, "--min", ask, "--json", *strict).out
     assert by_name(json.loads(report))["table", "pair_of_balls"]["failure"] is None
     # one that is short by more has no such excuse
     ended = standoff("clearance", scene, "--min", 0.5001)
@@ -323,6 +329,9 @@ def test_fits_that_are_no_contacts_are_told(standoff: Standoff, scene: Path, fit
         ("version = 1\nalow = []", "alow", "did you mean 'allow'?"),
         (FITS + "deph = 1", "allow[0].deph", "did you mean 'depth'?"),
         (FITS + "depth = -1", "allow[0].depth", "zero or above"),
+        (FITS + "depth = 1\ngap = [0, 1]", "allow[0]", "say the same thing"),
+        (FITS + "gap = [1, 0]", "allow[0].gap", "give the least gap first"),
+        (FITS + "gap = 1", "allow[0].gap", ""),
         (FITS.replace('reason = "it lies there"', ""), "allow[0]", "'reason' is missing"),
         (FITS.replace('"table"', '"ball"'), "allow[0]", "'ball' is both"),
         (FITS + FITS.removeprefix("version = 1\n"), "allow[1]", "same pair as allow[0]"),
@@ -376,6 +385,10 @@ def test_options_that_do_not_go_together(standoff: Standoff, scene: Path, tmp_pa
         ("--min", "-0.1"): "--min: must be zero or more",
         ("--min", "nan"): "--min: must be zero or more",
         ("--within", "0"): "--within: must be above zero",
+        ("--min-tolerance", "inf"): "--min-tolerance: must be zero or more and finite",
+        ("--closest", "0"): "--closest: must be one or more",
+        ("--parts", "moom"): "--parts: there is no body 'moom'. Did you mean 'moon'?",
+        ("--pairs", "ball", "b"): "--pairs: there is no body 'b'.",
         ("--allow", str(tmp_path / "none.toml")): "no file",
         ("--page", str(tmp_path / "page.htm")): "the ending '.htm' is not known",
         ("--plot", str(tmp_path / "plot.gif")): "the ending '.gif' is not known",
@@ -610,3 +623,76 @@ def test_the_list_of_fits_on_the_page_can_be_read(tmp_path: Path) -> None:
     file = tmp_path / "fits.toml"
     file.write_text(text)
     assert load_fits(file)[0] in load_fits(ROOT / "examples" / "fits-allowed.toml")
+
+
+def pairs_of(facts: dict[str, Any]) -> set[tuple[str, ...]]:
+    near = [pair["names"] for pair in facts["pairs"]]
+    return {tuple(names) for names in (*near, *(pair["names"] for pair in facts["far"]["pairs"]))}
+
+
+def test_only_the_pairs_that_are_named_are_looked_at(standoff: Standoff, scene: Path) -> None:
+    every = {*TRUTH, ("table", "moon"), ("ball", "moon"), ("pair_of_balls", "moon")}
+    for options, left in (
+        ((), every),
+        (("--parts", "*ball*"), {("ball", "pair_of_balls")}),
+        (("--parts", "ball", "--parts", "mo?n"), {("ball", "moon")}),
+        (("--pairs", "moon", "*"), {names for names in every if "moon" in names}),
+        (
+            ("--pairs", "ball", "table", "--pairs", "table", "moon"),
+            {("table", "ball"), ("table", "moon")},
+        ),
+        (("--parts", "[tb]a*", "--pairs", "*", "ball"), {("table", "ball")}),
+    ):
+        facts = facts_of(standoff, scene, *options)
+        assert pairs_of(facts) == left, options
+        assert facts["holds"]
+    # over the motion too
+    assert pairs_of(facts_of(standoff, scene, "--motion", "--parts", "*ball*")) == {
+        ("ball", "pair_of_balls")
+    }
+
+
+def test_without_a_horizon_as_many_pairs_as_are_asked_have_distances(
+    standoff: Standoff, scene: Path
+) -> None:
+    scene.write_text(SCENE.replace("within = 5.0", ""))
+    assert facts_of(standoff, scene)["within"] is None
+    facts = facts_of(standoff, scene, "--closest", 2)
+    assert 2 <= len(facts["pairs"]) <= 3
+    assert {("ball", "pair_of_balls"), ("table", "ball")} <= set(by_name(facts))
+    assert facts["far"]["at_least"] >= facts["within"] > 0.0
+    assert {*TRUTH} <= set(by_name(facts_of(standoff, scene, "--closest", 3)))
+    assert facts_of(standoff, scene, "--closest", 2, "--within", "inf")["far"]["count"] == 0
+    # what is asked needs no more than that
+    facts = facts_of(standoff, scene, "--min", 0.3)
+    assert (facts["within"], set(by_name(facts))) == (0.3, {*TRUTH} - {("table", "pair_of_balls")})
+    out = standoff("clearance", scene, "--min", 0.3, "--verbose").out
+    assert re.search(r"APART +table +≥ 0\.4\d+ *\n +pair_of_balls", out), out
+
+
+def test_a_range_of_gaps_and_patterns_of_names(standoff: Standoff, scene: Path, fits: Path) -> None:
+    play = '[[allow]]\na = "t*e"\nb = "pair*"\ngap = [{}, {}]\nreason = "play"\n'
+    press = '[[allow]]\na = "*b*ll*"\nb = "*ball*"\ngap = [-0.3, -0.2]\nreason = "press"\n'
+    for low, high, told in (
+        (0.4, 0.5, ""),
+        (0.1, 0.3, "a gap more than is allowed: at least 0.4"),
+        (0.6, 0.7, "a gap less than is allowed: at most 0.5"),
+    ):
+        fits.write_text(FITS + play.format(low, high) + press)
+        facts = facts_of(standoff, scene, "--allow", fits, "--within", 0.01)
+        pairs = facts["pairs"] + facts["far"]["pairs"]
+        (found,) = [pair for pair in pairs if pair["names"] == ["table", "pair_of_balls"]]
+        assert (found["failure"] or "").startswith(told)
+        assert facts["holds"] is (not told)
+        assert facts["fits"][1]["gap"] == [low, high]
+        assert [fit["holds"] for fit in facts["fits"]] == [True, not told, True]
+    out = standoff("clearance", scene, "--allow", fits).out
+    assert "*b*ll* - *ball*, a depth of 0.2 to 0.3 cm (press)" in out
+    # the first entry that a pair fits is its fit
+    fits.write_text(FITS + play.format(0.4, 0.6) + play.format(0.0, 0.1).replace("t*e", "table"))
+    facts = facts_of(standoff, scene, "--allow", fits)
+    assert facts["fits"][2]["note"] == "the pair is that of an earlier fit"
+    # of several pairs how many fail
+    fits.write_text(FITS + press.replace('"*ball*"', '"*"'))
+    facts = facts_of(standoff, scene, "--allow", fits)
+    assert facts["fits"][1]["note"].startswith("3 of 4 pairs: ")

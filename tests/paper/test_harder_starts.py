@@ -8,7 +8,7 @@ import pytest
 import standoff as so
 from standoff.tracking.inputs import flat_pose
 from standoff_studies.paper.convergence import cells
-from standoff_studies.paper.convergence.harder import HARDER, proven_as_committed
+from standoff_studies.paper.convergence.harder import DESCENDING, HARDER, proven_as_committed
 from standoff_studies.paper.convergence.pairs import RATES, SHARP, TURNING, pair
 from standoff_studies.paper.convergence.ring_law import (
     COVARIANT,
@@ -17,6 +17,8 @@ from standoff_studies.paper.convergence.ring_law import (
     ring_system,
 )
 from standoff_studies.paper.convergence.rings import (
+    FAT,
+    HOLLOW,
     RING_LAWS,
     THIN,
     RingPair,
@@ -113,6 +115,20 @@ def test_only_the_parts_by_principal_direction_are_semidefinite(
     assert least[PRINTED] < -0.1
     assert least[COVARIANT] < -0.1
     assert least[PARTS] > -1e-12
+
+
+@pytest.mark.soak
+def test_in_a_hollow_ring_the_covariant_law_is_not_enough() -> None:
+    """There is one minimum, as far as the walls are apart; only what descends comes from all."""
+    for one in ring_pairs(HOLLOW):
+        (least, *others), x = one.minima, one.pose.translation
+        away = np.hypot(np.hypot(x[0], x[1]) - 1.0, x[2])
+        assert least == pytest.approx(FAT[1] - away)
+        assert others == pytest.approx([least])
+        found = {name: arrivals(one, law) for name, law in RING_LAWS.items()}
+        assert all(found[name].at_least == found[name].tried for name in DESCENDING)
+        for name in ("as printed", "covariant M"):
+            assert found[name].at_least < found[name].tried
 
 
 @pytest.mark.soak

@@ -262,7 +262,7 @@ def test_obstacles_of_a_robot_may_be_solids(folder: Path) -> None:
         ('body = "other.json"', "body", "not a boundary's file"),
         ('body = "changed.json"', "body", "checksum"),
         ("body = 3", "body", "string in quotes"),
-        ('body = "ring.json"\npart = "ring"', "part", "for CAD files"),
+        ('body = "ring.json"\npart = "ring"', "part", "for other files"),
         ('body = "ring.json"\nshape = "box"', "shape", "unknown key"),
         ('body = "ring.json"\nscale = 2.0', "scale", "unknown key"),
         ('body = "ring.json"\nheal = "yes"', "heal", "true or false"),

@@ -97,7 +97,7 @@ def test_the_report_has_every_verdict(found: tuple[so.World, so.world.WorldAnswe
 
 
 def test_a_part_inside_another_is_no_fit_that_is_meant() -> None:
-    fits = (Fit("plate", "ball", 1.0, "meant"),)
+    fits = (Fit("plate", "ball", (-1.0, np.inf), "meant"),)
     report = reported(answered(1.0), Wanted(None, fits))
     (inside,) = [row for row in report.rows if row.verdict is Verdict.CONTAINED]
     assert inside.failure

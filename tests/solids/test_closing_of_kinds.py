@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from test_spatial_search import negative_tolerance
 
-from families.solid_shapes import bolt, bracket, peg, ring, tube
+from families.solid_shapes import bolt, bracket, cup, peg, ring, taper_bore, taper_plug, tube
 from standoff.solids import Solid
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
@@ -88,3 +88,38 @@ def test_a_tilted_rim_over_a_plane() -> None:
         least = np.hypot(out, spots[:, 2]).min()
         assert answer.lower_bound <= least
         assert answer.distance == pytest.approx(least, abs=1e-5)
+
+
+SLOPE = 0.05
+FITS = {
+    "pin": (lambda gap: (tube(3.0, 6.0, 0.0, 20.0), peg(3.0 - gap, 0.0, 20.0)), 1.0),
+    "bush": (lambda gap: (tube(3.0, 6.0, 0.0, 20.0), tube(1.0, 3.0 - gap, 0.0, 20.0)), 1.0),
+    "plug in a blind hole": (
+        lambda gap: (cup(3.0, 6.0, 5.0, 20.0), peg(3.0 - gap, 7.0, 20.0)),
+        1.0,
+    ),
+    "taper": (
+        lambda gap: (
+            taper_bore(SLOPE, -60.0, 6.0, 0.0, 20.0),
+            taper_plug(SLOPE, gap / SLOPE - 60.0, 0.0, 20.0),
+        ),
+        np.cos(np.arctan(SLOPE)),
+    ),
+}
+"""Of a gap along the radius: the parts, and the distance over it."""
+
+
+@pytest.mark.parametrize("gap", [1.0, 0.1, 1e-2, 1e-3, 1e-5])
+@pytest.mark.parametrize("name", FITS)
+def test_coaxial_walls_whose_rims_are_in_one_plane(name, gap) -> None:
+    """A pin flush with its bore, lifted a little, and moved aside."""
+    (a, b), share = FITS[name][0](gap), FITS[name][1]
+    places = [(0.0, 0.0), (0.0, 1e-6), (0.3 * gap, 0.0), (1e-9, 0.0)]
+    for aside, lift in places if name != "taper" else places[:1]:
+        move = np.array([0.6 * aside, 0.8 * aside, lift])
+        answer = spatial_distance(a, b, None, (np.eye(3), move))
+        true = (gap - aside) * share
+        assert answer.status in PROVEN, (aside, lift, answer.status)
+        assert answer.distance == pytest.approx(true, abs=1e-12)
+        assert answer.lower_bound <= true + 1e-13
+        assert answer.counts.boxes < 150_000, (aside, lift)

@@ -3,21 +3,27 @@ every sample, whatever the part, the potential and the limit."""
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numba import njit
 
 from draws import draws
-from families.solid_shapes import bolt, prism, tube
+from families.solid_shapes import bolt, prism, taper_bore, tube
 from families.threads import flanks
+from standoff.bodies.tessellation import chart_row
+from standoff.kernels.body import layout as L
 from standoff.kernels.compiler.decorators import pointer
-from standoff.kernels.entries.queries import on_face
+from standoff.kernels.entries.queries import coedge_parameters, on_face
 from standoff.kernels.entries.solids import side_at
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
     CENTRE_OF,
+    CIRCLE_OF,
+    CONE_OF,
     SCREW_OF,
     TORUS_THROUGH,
     Potential,
@@ -30,6 +36,7 @@ SOLIDS = {
     "star": lambda: prism(STAR, 1.0),
     "ring": lambda: tube(0.5, 0.8, -0.6, 0.6),
     "bolt": bolt,
+    "taper": lambda: taper_bore(0.3, -1.0, 2.0, 0.0, 1.5),
     "thread": lambda: flanks()[0],
 }
 ACROSS = 24
@@ -48,8 +55,23 @@ def unit(rng) -> np.ndarray:
     return v / np.linalg.norm(v)
 
 
+def about_the_axis(rng) -> Potential:
+    """One that turns about nearly z, the axis of the solids here."""
+    kind = int(rng.choice([AXIS_OF, CONE_OF, CIRCLE_OF]))
+    off, tilt = rng.normal(size=(2, 3)) * 10.0 ** rng.uniform(-14.0, -1.0, (2, 1))
+    n = np.array([0.0, 0.0, 1.0]) + tilt * (rng.random() < 0.7)
+    k1, k2 = rng.uniform(0.2, 1.0, 2)
+    if kind == CONE_OF:
+        k1, k2 = np.array([k1, k2]) / np.hypot(k1, k2)
+    o, n = off * (rng.random() < 0.7) + [0.0, 0.0, rng.normal()], n / np.linalg.norm(n)
+    zero, sign = (0.0, 0.0, 0.0), float(rng.choice([-1.0, 1.0]))
+    return Potential(kind, tuple(o.tolist()), zero, zero, tuple(n.tolist()), k1, k2, sign)
+
+
 def drawn(rng, points: np.ndarray) -> Potential:
     """Any potential near some points; one of a screw serves on one side of its axis."""
+    if rng.random() < 0.3:
+        return about_the_axis(rng)
     kind = int(rng.choice([TORUS_THROUGH, TORUS_THROUGH, AXIS_OF, CENTRE_OF, SCREW_OF]))
     middle, n = points.mean(axis=0), unit(rng)
     e1 = np.cross(n, unit(rng))
@@ -69,6 +91,18 @@ def drawn(rng, points: np.ndarray) -> Potential:
     return Potential(kind, *numbers, float(k1), float(k2), sign)
 
 
+@cache
+def trimming(solid, chart) -> list[tuple[float, float]]:
+    """Parameters of places on a chart's trimming curves."""
+    ints, reals = solid.boundary.ints, solid.boundary.reals
+    row, found = chart_row(solid.boundary, chart), []
+    for coedge in range(row[L.CHART_COEDGE], row[L.CHART_COEDGE] + row[L.CHART_N_COEDGES]):
+        o = ints[ints[L.COEDGES] + L.COEDGE_STRIDE * coedge + L.COEDGE_REALS]
+        ends = reals[o + L.PCURVE_FIRST], reals[o + L.PCURVE_LAST]
+        found += [coedge_parameters(ints, reals, coedge, t)[:2] for t in np.linspace(*ends, 97)]
+    return found
+
+
 @pytest.mark.parametrize("name", SOLIDS)
 def test_no_sample_has_more_than_is_proven(name, rng) -> None:
     solid = SOLIDS[name]()
@@ -83,10 +117,12 @@ def test_no_sample_has_more_than_is_proven(name, rng) -> None:
             a, b, c, d = u0, u1, v0, v1
         chart = solid.leaves[leaf].chart
         places = [(u, v) for u in np.linspace(a, b, ACROSS) for v in np.linspace(c, d, ACROSS)]
-        points = np.array([leaf_jet_of(solid.packed, leaf, u, v)[0] for u, v in places])
-        phi = drawn(rng, points)
         on = [on_face(solid.boundary.ints, solid.boundary.reals, chart, u, v) for u, v in places]
         cut += 0 < sum(on) < len(on)
+        on_trims = [(u, v) for u, v in trimming(solid, chart) if a <= u <= b and c <= v <= d]
+        places, on = places + on_trims, on + [True] * len(on_trims)
+        points = np.array([leaf_jet_of(solid.packed, leaf, u, v)[0] for u, v in places])
+        phi = drawn(rng, points)
         sign = float(rng.choice([-1.0, 1.0]))
         values = np.array([sign * potential_jet(phi, tuple(p), 0.0)[0] for p in points])
         greatest = values[np.array(on)].max() if any(on) else -np.inf

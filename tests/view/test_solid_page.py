@@ -427,11 +427,20 @@ def test_a_world_draws_what_it_tells_of_all_its_pairs_of_solids() -> None:
         until(lambda: "feet - lid: apart" in panel._matrix.content)
 
 
-def test_a_world_of_planar_solids_is_refused() -> None:
-    disc = PlanarSolid.from_loops([ConicArc((0, 0), (1, 0), (0, 1))])
-    world = so.World({"disc": disc, "other": disc})
-    with pytest.raises(ValueError, match="'disc' is or has a planar solid"):
-        so.view(world, [np.eye(4), Pose.exp((0, 0, 0), (3, 0, 0)).matrix], open=False)
+def test_a_world_of_planar_solids_is_dragged_in_its_plane() -> None:
+    ring = PlanarSolid.from_loops(
+        [[ConicArc((0, 0), (2, 0), (0, 2))], [ConicArc((0, 0), (1, 0), (0, 1))]]
+    )
+    disc = PlanarSolid.from_loops([ConicArc((0, 0), (0.5, 0), (0, 0.5))])
+    world = so.World({"ring": ring, "disc": disc})
+    with so.view(world, [np.eye(4), Pose.exp((0, 0, 0), (3, 0, 0)).matrix], open=False) as page:
+        stage = page.stage
+        assert stage.picture.planar
+        assert [body.size for body in stage.picture._bodies] == pytest.approx([32**0.5, 2**0.5])
+        assert stage.live.answer.closest.distance == pytest.approx(0.5)
+        page._asked.put(lambda: stage._drag(1, [1.0, 0.0, 0.0, 0.0], [0.0, 0.2, 0.0]))
+        until(lambda: abs(stage.live.answer.closest.distance - 0.3) < 1e-9)
+        wait_until_drawn(page)
 
 
 @pytest.mark.usefixtures("slowly")

@@ -313,6 +313,16 @@ def test_states_go_on_are_stored_and_carried() -> None:
     after = world.changed(remove=["box"])
     new = after.start_from(world, other)
     assert after.answer(new)["socket", "ball"].distance == pytest.approx(0.5, abs=WITHIN)
+    assert (new.counts.started, new.counts.resting) == (0, 1)
+    # the pair that a narrower horizon left out is asked, and the one that was near is not
+    near = world.changed(within=0.45)
+    first = near.start(poses)
+    assert first.counts.started == 2
+    wider = world.start_from(near, first)
+    assert (wider.counts.started, wider.counts.resting) == (1, 2)
+    for pair in (("socket", "ball"), ("socket", "box"), ("ball", "box")):
+        one, other = world.answer(wider)[pair], world.answer(state)[pair]
+        assert (one.distance, one.lower_bound) == (other.distance, other.lower_bound)
     for name in ("distance", "lower_bound", "upper_bound"):
         one = getattr(world.answer(state)["socket", "ball"], name)
         assert one == getattr(answer["socket", "ball"], name)

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from standoff.bodies.body import Body
-from standoff.bodies.boundary import Boundary
-from standoff.geometry.validation import Array
+from standoff.cad.finished import Finished
+from standoff.checks.units import lengths_told
 from standoff.wording import counted
 
 if TYPE_CHECKING:
+    from standoff.bodies.body import Body
+    from standoff.bodies.boundary import Boundary
+    from standoff.geometry.validation import Array
     from standoff.solids import Solid
 
 
@@ -120,30 +121,36 @@ class Part:
     name : str
         Of the instance and its assemblies, such as "rod-assembly/NUT::1", as a person gave them;
         with a number where another part has it already.
-    shape : Boundary or Body
-        In its own frame. Instances of one solid share it.
     pose : (4, 4) array
         Of its frame in the assembly's.
     colour : (red, green, blue, opacity) or None
         Each within [0, 1], as in the file.
     report : PartReport
-    made : Solid, optional
-        The shape as a `Solid`, where it is made already.
+    finished : Finished
+        What instances of one solid share.
     """
 
     name: str
-    shape: Boundary | Body
     pose: Array
     colour: tuple[float, float, float, float] | None
     report: PartReport
-    made: Solid | None = None
+    finished: Finished
 
-    @cached_property
+    @property
+    def shape(self) -> Boundary | Body:
+        """In its own frame. Instances of one solid share it."""
+        return self.finished.shape
+
+    @property
     def solid(self) -> Solid:
-        """The shape as a `Solid`, for distances of parts that need not be convex; made once."""
-        from standoff.solids import Solid
+        """The shape as a `Solid`, for distances of parts that need not be convex; they share it
+        too."""
+        return self.finished.solid
 
-        return Solid(self.shape) if self.made is None else self.made
+    @property
+    def body(self) -> Boundary | Solid:
+        """What a world takes: the shape where it is convex, a `Body`, else the solid."""
+        return self.shape if self.report.convex else self.solid
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +170,8 @@ class Assembly:
         Parts left out because `keep="readable"` was asked for, with the reasons, and shapes without
         a face.
     seconds : float
+    stored : bool
+        Was all of it in the store?
     """
 
     parts: tuple[Part, ...]
@@ -171,6 +180,7 @@ class Assembly:
     source: str
     refusals: tuple[str, ...] = ()
     seconds: float = 0.0
+    stored: bool = False
 
     def __len__(self) -> int:
         return len(self.parts)
@@ -207,10 +217,8 @@ class Assembly:
 
     def report(self) -> str:
         """What was found, as text."""
-        converted = self.file_unit and self.unit != self.file_unit
-        told = f", converted from {self.file_unit}" if converted else ""
-        parts, unit = counted(len(self.parts), "part"), self.unit or "no known unit"
-        lines = [f"{self.source}: {parts}, lengths in {unit}{told}"]
+        lengths = lengths_told(self.unit, self.file_unit) + (", read before" if self.stored else "")
+        lines = [f"{self.source}: {counted(len(self.parts), 'part')}, {lengths}"]
         seen: list[PartReport] = []
         for part in self.parts:
             if all(part.report is not one for one in seen):

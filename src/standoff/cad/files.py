@@ -23,8 +23,6 @@ ENDINGS = {
 """The kinds of files by their endings."""
 
 ENTITY = re.compile(rb"(?:^|[;\s])#(\d+)\s*=")
-METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254}
-"""Units of length, in metres."""
 STATED = re.compile(
     rb"UNCERTAINTY_MEASURE_WITH_UNIT\s*\(\s*(?:POSITIVE_)?LENGTH_MEASURE\s*\(\s*"
     rb"(\d+\.?\d*(?:[Ee][-+]?\d+)?)\s*\)\s*,\s*#(\d+)"
@@ -38,6 +36,11 @@ UNITS_BY_NAME = {"INCH": 0.0254, "INCHES": 0.0254, "FOOT": 0.3048, "MILLIMETRE":
 STEP_START = b"ISO-10303-21"
 STEP_END = b"END-ISO-10303-21"
 CHUNK = 1 << 22
+
+
+def is_cad_file(name: str | Path) -> bool:
+    """Does its ending say so?"""
+    return Path(name).suffix.lower() in ENDINGS
 
 
 def existing(path: Any) -> Path:

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from standoff.cad.files import METRES
 from standoff.cad.opencascade import (
     KINDS,
     cast,
@@ -20,6 +19,7 @@ from standoff.cad.opencascade import (
     is_kind,
     matrix_of,
 )
+from standoff.checks.units import METRES
 from standoff.errors import CadError
 from standoff.geometry.validation import Array
 
@@ -174,9 +174,13 @@ def _placed(shape: Any, pose: Array, name: str, colour: Colour | None) -> Instan
     from OCP.TopLoc import TopLoc_Location
 
     own = matrix_of(shape.Location())
+    return Instance(name, as_its_kind(shape.Located(TopLoc_Location())), pose @ own, colour)
+
+
+def as_its_kind(shape: Any) -> Any:
+    """A shape as the solid, shell or face that it is; a compound as it is."""
     kind = next((kind for kind in KINDS if is_kind(shape, kind)), None)
-    free = shape.Located(TopLoc_Location())
-    return Instance(name, free if kind is None else cast(kind, free), pose @ own, colour)
+    return shape if kind is None else cast(kind, shape)
 
 
 def _name(label: Any) -> str:

@@ -10,3 +10,15 @@ takes about 10 microseconds and 1 kB each, and a part of so many is a mesh in di
 
 MOST_FACES: Final = 20_000
 """Faces of one solid above which it is refused: making it would take minutes."""
+
+STORE_MEGABYTES: Final = 2000
+"""Size of the store of finished parts, in MB, where STANDOFF_CACHE_SIZE names none: a part has some
+10 kB a face, so these are thousands of parts."""
+
+TRIMMED_TO: Final = 0.9
+"""Fraction of its size to which a store that is larger is trimmed, so that it is not trimmed for
+each part."""
+
+STALE: Final = 3600.0
+"""Age of a temporary file of the store, s, from which on its writer is taken to be gone: writing
+takes less than a second."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import comb
 
 from standoff.cad.tolerances import FITTED_TRIM
 from standoff.geometry.bernstein import basis as bernstein
@@ -85,6 +85,7 @@ def _lowered(
 def _elevation(low: int, high: int) -> Array:
     """(high + 1, low + 1): Bernstein coefficients of a higher degree from those of a lower one."""
     i, j = np.arange(high + 1)[:, None], np.arange(low + 1)
+    comb = scipy.special.comb
     return np.asarray(comb(low, j) * comb(high - low, i - j) / comb(high, i))
 
 

@@ -2,31 +2,62 @@
 
 from __future__ import annotations
 
+import pickle
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
+from hashlib import file_digest
 from pathlib import Path
+from threading import Timer
 from time import perf_counter
 from typing import Any, NamedTuple
 
+from standoff.cad import store
 from standoff.cad.assembly import Assembly, Part, PartReport
-from standoff.cad.files import ENDINGS, METRES, check_lines, check_step, existing, stated_accuracy
-from standoff.checks.numbers import magnitude
+from standoff.cad.files import ENDINGS, check_lines, check_step, existing, stated_accuracy
+from standoff.cad.finished import Finished, stored
+from standoff.cad.finishing import Watch, finished_solids
+from standoff.checks.numbers import magnitude, whole_number
 from standoff.checks.real_numbers import shown
+from standoff.checks.units import METRES, known_unit
 from standoff.errors import CadError, StandoffError, StandoffTypeError
+from standoff.kernels.compiler.notices import alive, say
 from standoff.wording import counted
 
-UNITS = ("mm", "cm", "m", "inch")
 MOST_NAMED = 5
+FIRST_LINE = 2.0
+"""Seconds after which a line says that a file is being read."""
+
+
+store.code_digest()  # now: later it may be that of sources which this process does not run
 
 
 class Options(NamedTuple):
-    """How a file is read: the arguments of `read_step`."""
+    """What is asked of reading, checked."""
 
     unit: str
     heal: bool
     keep: str
     tolerance: float | None
+    workers: int
+    accuracy: float = 0.0
+    """That the file states, length."""
+
+    @property
+    def making(self) -> tuple[Any, ...]:
+        """What a part follows from beside its shape and its name."""
+        return (self.heal, self.accuracy, self.tolerance)
+
+
+class Solids(NamedTuple):
+    """What a file holds: its unit; of each instance name, pose, colour and which solid it is; the
+    solids; and whether all of it was in the store."""
+
+    file_unit: str
+    placed: list[tuple[str, Any, Any, int]]
+    solids: list[Finished]
+    stored: bool
 
 
 def read_step(
@@ -36,6 +67,7 @@ def read_step(
     heal: bool = False,
     keep: str = "all",
     tolerance: float | None = None,
+    workers: int = 1,
 ) -> Assembly:
     """The parts of a STEP file, with names, colours and places.
 
@@ -55,6 +87,9 @@ def read_step(
         file claims: the accuracy that it states, or four times the tolerances of its parts. What
         they miss each other by is measured, told in the report, and subtracted from every lower
         bound.
+    workers : int
+        Processes that share the making of parts, the same ones in the same order; a program that
+        asks for more than one begins with ``if __name__ == "__main__":``.
 
     Returns
     -------
@@ -73,15 +108,7 @@ def read_step(
     StandoffError, TypeError
         An unknown unit or option; not a path.
     """
-    start = perf_counter()
-    file = existing(path)
-    checked = _checked(unit, heal, keep, tolerance)
-    check_step(file)
-    from standoff.cad.instances import step_instances
-
-    instances, file_unit = step_instances(file, unit)
-    accuracy = stated_accuracy(file) / METRES[unit]
-    return _assembly(file.name, instances, checked, (file_unit, accuracy), start)
+    return _read(existing(path), "step", _checked(unit, heal, keep, tolerance, workers))
 
 
 def read_iges(
@@ -91,12 +118,13 @@ def read_iges(
     heal: bool = False,
     keep: str = "all",
     tolerance: float | None = None,
+    workers: int = 1,
 ) -> Assembly:
     """The solids of an IGES file; its loose faces are sewn only with ``heal=True``.
 
     Parameters
     ----------
-    path, unit, heal, keep, tolerance : as for `read_step`.
+    path, unit, heal, keep, tolerance, workers : as for `read_step`.
 
     Returns
     -------
@@ -107,24 +135,22 @@ def read_iges(
     CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
         As for `read_step`.
     """
-    start = perf_counter()
-    file = existing(path)
-    checked = _checked(unit, heal, keep, tolerance)
-    check_lines(file, "IGES", None)
-    from standoff.cad.instances import iges_instances
-
-    instances, file_unit = iges_instances(file, unit)
-    return _assembly(file.name, instances, checked, (file_unit, 0.0), start)
+    return _read(existing(path), "iges", _checked(unit, heal, keep, tolerance, workers))
 
 
 def read_brep(
-    path: Any, *, heal: bool = False, keep: str = "all", tolerance: float | None = None
+    path: Any,
+    *,
+    heal: bool = False,
+    keep: str = "all",
+    tolerance: float | None = None,
+    workers: int = 1,
 ) -> Assembly:
     """The solids of a BREP file, OpenCASCADE's own, whose lengths have no unit.
 
     Parameters
     ----------
-    path, heal, keep, tolerance : as for `read_step`.
+    path, heal, keep, tolerance, workers : as for `read_step`.
 
     Returns
     -------
@@ -136,13 +162,7 @@ def read_brep(
     CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
         As for `read_step`.
     """
-    start = perf_counter()
-    file = existing(path)
-    checked = _checked("", heal, keep, tolerance)
-    check_lines(file, "BREP", b"CASCADE Topology")
-    from standoff.cad.instances import brep_instances
-
-    return _assembly(file.name, brep_instances(file), checked, ("", 0.0), start)
+    return _read(existing(path), "brep", _checked("", heal, keep, tolerance, workers))
 
 
 def read_cad(
@@ -152,12 +172,14 @@ def read_cad(
     heal: bool = False,
     keep: str = "all",
     tolerance: float | None = None,
+    workers: int = 1,
 ) -> Assembly:
     """A file of any of these kinds, by its ending.
 
     Parameters
     ----------
-    path, unit, heal, keep, tolerance : as for `read_step`; a BREP file's lengths stay as they are.
+    path, unit, heal, keep, tolerance, workers : as for `read_step`; a BREP file's lengths stay as
+        they are.
 
     Returns
     -------
@@ -170,12 +192,10 @@ def read_cad(
     """
     file = existing(path)
     kind = ENDINGS.get(file.suffix.lower())
-    if kind == "brep":
-        return read_brep(file, heal=heal, keep=keep, tolerance=tolerance)
     if kind is None:
         raise CadError(f"{file}: give a file that ends in {', '.join(ENDINGS)}.", "path", path)
-    read = read_step if kind == "step" else read_iges
-    return read(file, unit=unit, heal=heal, keep=keep, tolerance=tolerance)
+    lengths = "" if kind == "brep" else unit
+    return _read(file, kind, _checked(lengths, heal, keep, tolerance, workers))
 
 
 def from_shape(
@@ -185,6 +205,7 @@ def from_shape(
     heal: bool = False,
     keep: str = "all",
     tolerance: float | None = None,
+    workers: int = 1,
 ) -> Assembly:
     """The solids of a shape of OpenCASCADE, or of an object that wraps one.
 
@@ -193,7 +214,7 @@ def from_shape(
     shape : TopoDS_Shape, or an object of build123d or CadQuery
         Its attribute ``wrapped`` is taken; of a CadQuery workplane, ``val()``.
     name : str
-    heal, keep, tolerance : as for `read_step`.
+    heal, keep, tolerance, workers : as for `read_step`.
 
     Returns
     -------
@@ -205,8 +226,7 @@ def from_shape(
     CadError, ModuleNotFoundError, StandoffError, TypeError
         As for `read_step`; not such an object.
     """
-    start = perf_counter()
-    checked = _checked("", heal, keep, tolerance)
+    options = _checked("", heal, keep, tolerance, workers)
     from standoff.cad.instances import shape_instances
 
     given = shape.val() if hasattr(shape, "val") and not hasattr(shape, "wrapped") else shape
@@ -217,18 +237,20 @@ def from_shape(
             "shape",
             shape,
         )
-    return _assembly(name, shape_instances(given, name), checked, ("", 0.0), start)
+    with _watched(name) as watch:
+        instances = _numbered(shape_instances(given, name))
+        return _assembly(_made(instances, "", options, watch), options, watch)
 
 
-def _checked(unit: str, heal: bool, keep: str, tolerance: float | None) -> Options:
-    if unit and unit not in UNITS:
-        raise StandoffError(f"unit = {shown(unit)}: give one of {UNITS}.", "unit", unit)
+def _checked(unit: str, heal: bool, keep: str, tolerance: float | None, workers: int) -> Options:
+    if unit:
+        known_unit(unit)
     if not isinstance(heal, bool):
         raise StandoffTypeError(f"heal = {shown(heal)}: give True or False.", "heal", heal)
     if keep not in ("all", "readable"):
         raise StandoffError(f"keep = {shown(keep)}: give 'all' or 'readable'.", "keep", keep)
     allowed = None if tolerance is None else magnitude(tolerance, "tolerance")
-    return Options(unit, heal, keep, allowed)
+    return Options(unit, heal, keep, allowed, whole_number(workers, "workers"))
 
 
 def _numbered(instances: Sequence[Any]) -> list[Any]:
@@ -247,51 +269,106 @@ def _numbered(instances: Sequence[Any]) -> list[Any]:
     return found
 
 
-def _assembly(
-    source: str,
-    instances: Sequence[Any],
-    options: Options,
-    claims: tuple[str, float],
-    start: float,
-) -> Assembly:
-    """Make each solid once; raise if one is refused, unless only the readable ones are wanted.
+@contextmanager
+def _watched(source: str) -> Iterator[Watch]:
+    watch = Watch(source, perf_counter())
+    first = Timer(FIRST_LINE, lambda: say(watch.line()))
+    first.daemon = True
+    with alive(watch.line):
+        first.start()
+        try:
+            yield watch
+        finally:
+            first.cancel()
 
-    claims : of the file, its unit and its accuracy, length.
-    """
-    from standoff.cad.making import Made, made_part
 
-    unit, heal, keep, tolerance = options
-    file_unit, accuracy = claims
-    instances = _numbered(instances)
-    if not instances:
+def _read(file: Path, kind: str, options: Options) -> Assembly:
+    with _watched(file.name) as watch:
+        return _assembly(_solids_of(file, kind, options, watch), options, watch)
+
+
+def _solids_of(file: Path, kind: str, options: Options, watch: Watch) -> Solids:
+    """What the store has of a file of these bytes, or else what is made of it."""
+    key = _key(file, kind, options)
+    found = _stored(key)
+    if found is not None:
+        return found
+    instances, file_unit = _instances(file, kind, options.unit)
+    if _key(file, kind, options) != key:
+        raise CadError(f"{file} changed while it was read: read it again.")
+    if kind == "step":
+        options = options._replace(accuracy=stated_accuracy(file) / METRES[options.unit])
+    return _made(_numbered(instances), file_unit, options, watch, key)
+
+
+def _key(file: Path, kind: str, options: Options) -> str:
+    named = file.stem if kind == "brep" else ""  # its part has the file's name
+    with file.open("rb") as stream:
+        content = file_digest(stream, "sha256").digest()
+    return store.key_of(content, kind, named, options.unit, options.making)
+
+
+def _stored(key: str) -> Solids | None:
+    content = store.taken(key)
+    if content is None:
+        return None
+    file_unit, placed, keys = pickle.loads(content)
+    solids = [one for key in keys if (one := stored(key)) is not None]
+    return Solids(file_unit, placed, solids, True) if len(solids) == len(keys) else None
+
+
+def _instances(file: Path, kind: str, unit: str) -> tuple[list[Any], str]:
+    """The instances of a file, and its unit."""
+    if kind == "step":
+        check_step(file)
+        from standoff.cad.instances import step_instances
+
+        return step_instances(file, unit)
+    check_lines(file, kind.upper(), b"CASCADE Topology" if kind == "brep" else None)
+    from standoff.cad.instances import brep_instances, iges_instances
+
+    return iges_instances(file, unit) if kind == "iges" else (brep_instances(file), "")
+
+
+def _made(
+    instances: Sequence[Any], file_unit: str, options: Options, watch: Watch, key: str = ""
+) -> Solids:
+    """Make each solid once; `key` is the file's in the store."""
+    solids, keys, numbers = finished_solids(instances, options.making, options.workers, watch)
+    placed = [(i.name, i.pose, i.colour, k) for i, k in zip(instances, numbers, strict=True)]
+    if key and solids:
+        store.put(key, pickle.dumps((file_unit, placed, keys)))
+    store.trim()
+    return Solids(file_unit, placed, solids, False)
+
+
+def _assembly(read: Solids, options: Options, watch: Watch) -> Assembly:
+    """Raise if a part is refused, unless only the readable ones are wanted."""
+    source = watch.source
+    if not read.placed:
         raise CadError(f"{source} has no solid.")
-    kept: list[tuple[Any, Made]] = []
     parts, refusals, empty = [], [], []
-    for instance in instances:
-        made = next((m for shape, m in kept if shape.IsPartner(instance.shape)), None)
-        if made is None:
-            made = made_part(instance.shape, instance.name, heal, accuracy, tolerance)
-            kept.append((instance.shape, made))
+    for name, pose, colour, number in read.placed:
+        made = read.solids[number]
         if not made.report.faces:
-            empty.append(f"{instance.name}: left out, it has no face")
-            continue
-        if made.shape is None:
-            refusals.append(f"{instance.name}: {made.report.refused}")
-            continue
-        placed = instance.name, made.shape, instance.pose, instance.colour
-        parts.append(Part(*placed, made.report, made.solid))
+            empty.append(f"{name}: left out, it has no face")
+        elif made.refused:
+            refusals.append(f"{name}: {made.report.refused}")
+        else:
+            parts.append(Part(name, pose, colour, made.report, made))
     if not parts and not refusals:
         raise CadError(f"{source} has no solid with faces.")
-    if refusals and (keep == "all" or not parts):
+    if refusals and (options.keep == "all" or not parts):
         more = f"; and {len(refusals) - MOST_NAMED} more" if len(refusals) > MOST_NAMED else ""
         raise CadError(
-            f"{source}: {len(refusals)} of {counted(len(instances), 'part')} refused. "
+            f"{source}: {len(refusals)} of {counted(len(read.placed), 'part')} refused. "
             + "; ".join(refusals[:MOST_NAMED])
             + more,
             refusals=tuple(refusals),
         )
-    spent = perf_counter() - start
-    return Assembly(tuple(parts), unit, file_unit, source, (*refusals, *empty), spent)
+    left_out, spent = (*refusals, *empty), perf_counter() - watch.began
+    units = options.unit, read.file_unit
+    return Assembly(tuple(parts), *units, source, left_out, spent, read.stored)
 
 
 def reports_of(
@@ -315,24 +392,8 @@ def reports_of(
     CadError, FileNotFoundError, ModuleNotFoundError, TypeError
         As for `read_step`, but for parts that are refused.
     """
-    file: Path = existing(path)
-    from standoff.cad.instances import brep_instances, iges_instances, step_instances
-    from standoff.cad.making import made_part
-
-    kind, accuracy = ENDINGS.get(file.suffix.lower()), 0.0
-    if kind == "step":
-        check_step(file)
-        instances = step_instances(file, "mm")[0]
-        accuracy = stated_accuracy(file) / METRES["mm"]
-    elif kind == "iges":
-        instances = iges_instances(file, "mm")[0]
-    else:
-        instances = brep_instances(file)
-    seen: list[Any] = []
-    found = []
-    for instance in _numbered(instances):
-        if not any(instance.shape.IsPartner(one) for one in seen):
-            seen.append(instance.shape)
-            made = made_part(instance.shape, instance.name, heal, accuracy, tolerance)
-            found.append(made.report)
-    return tuple(found)
+    file = existing(path)
+    kind = ENDINGS.get(file.suffix.lower(), "brep")
+    options = _checked("" if kind == "brep" else "mm", heal, "all", tolerance, 1)
+    with _watched(file.name) as watch:
+        return tuple(one.report for one in _solids_of(file, kind, options, watch).solids)

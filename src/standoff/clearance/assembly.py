@@ -24,6 +24,8 @@ class AssemblyFile:
         What was found when it was read.
     places : mapping of str to Pose
         Of the parts' frames.
+    colours : mapping of str to (red, green, blue)
+        Of the parts that have one in the file, each within [0, 1].
     """
 
     file: Path
@@ -31,6 +33,7 @@ class AssemblyFile:
     length_unit: str
     notes: tuple[str, ...] = ()
     places: Mapping[str, Pose] = field(default_factory=dict)
+    colours: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
 
     def poses(self, world: World, time: float) -> dict[str, Pose]:
         """Where the parts of a world are: at any time the same."""

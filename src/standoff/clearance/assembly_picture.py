@@ -43,8 +43,14 @@ EDGE = "0.25"
 """Colour of the parts' edges."""
 
 
-def assembly_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure:
-    """Draw the bodies of a world that has solids: those of its first pairs in colour.
+def assembly_figure(
+    report: Report,
+    poses: Mapping[str, Pose],
+    unit: str,
+    colours: Mapping[str, tuple[float, float, float]],
+) -> Figure:
+    """Draw the bodies of a world that has solids: those of its first pairs in colour, in their own
+    where they have one, the others faint.
 
     All triangles are sorted together from back to front, as parts may be around one another.
     """
@@ -57,22 +63,28 @@ def assembly_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Fig
     axes.view_init(*USUAL_VIEW)
     axes.set_proj_type("ortho")
     parts = parts_of(report.world, poses, coloured)
-    _draw_parts(axes, parts, rows, coloured, towards)
+    shown: dict[str, Any] = {name: colour_of(name, coloured) for name in coloured} | dict(colours)
+    _draw_parts(axes, parts, rows, coloured, shown, towards)
     ends = _draw_pairs(axes, rows)
     clouds = [np.asarray(part.pose.apply(part.solid.points)) for part in parts]
     frame(axes, seen_from(np.concatenate([*clouds, *ends]), towards), 0.0, towards, unit)
     look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
-    figure.legend(handles=bodies_legend(coloured), loc="lower left", ncols=2, **look)
+    figure.legend(handles=bodies_legend(coloured, shown), loc="lower left", ncols=2, **look)
     figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
     return figure
 
 
 def _draw_parts(
-    axes: Any, parts: Sequence[Part], rows: Sequence[Row], coloured: Sequence[str], towards: Array
+    axes: Any,
+    parts: Sequence[Part],
+    rows: Sequence[Row],
+    coloured: Sequence[str],
+    colours: Mapping[str, Any],
+    towards: Array,
 ) -> None:
     met = (Verdict.OVERLAPPING, Verdict.CONTAINED)
     deep = {name for row in rows if row.verdict in met for name in row.names}
-    corners, colours, lines = [], [], []
+    corners, shades, lines = [], [], []
     right, up = across(towards)
     lamp = LIGHT @ np.array([right, towards, up])
     for name, solid, pose in parts:
@@ -81,13 +93,13 @@ def _draw_parts(
         seen = upright @ towards > 0.0
         lengths = np.maximum(np.linalg.norm(upright[seen], axis=1), np.finfo(float).tiny)
         bright = DARKEST + (1.0 - DARKEST) * np.clip(upright[seen] @ lamp / lengths, 0.0, 1.0)
-        colour = colour_of(name, coloured) if name in coloured else OTHERS
+        colour = colours.get(name, OTHERS)
         opacity = FAINT if name not in coloured else THROUGH if name in deep else 1.0
         shade = bright[:, None] * np.array(to_rgb(colour))
         corners.append(points[solid.triangles][seen])
-        colours.append(np.column_stack([shade, np.full(len(shade), opacity)]))
+        shades.append(np.column_stack([shade, np.full(len(shade), opacity)]))
         lines += [np.asarray(pose.apply(line.points)) for line in solid.lines if not line.smooth]
-    every = np.concatenate(colours)
+    every = np.concatenate(shades)
     edges = np.where(every[:, 3:] == 1.0, every, 0.0)
     axes.add_collection3d(
         Poly3DCollection(

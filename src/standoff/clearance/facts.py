@@ -6,6 +6,7 @@ from typing import Any
 
 from standoff.clearance.report import Report, Row
 from standoff.clearance.verdicts import touching_tolerance
+from standoff.wording import printable
 
 ANSWERED = (
     *("distance", "lower_bound", "upper_bound", "point_a", "point_b", "normal"),
@@ -20,6 +21,7 @@ def report_facts(report: Report) -> dict[str, Any]:
         "bodies": len(report.world.bodies),
         "within": report.world.within,
         "min": report.least,
+        "min_missed_by": report.missing,
         "clearance": report.clearance,
         "holds": not report.failures,
         "certified": report.certified,
@@ -38,7 +40,7 @@ def report_facts(report: Report) -> dict[str, Any]:
             {
                 "a": note.fit.a,
                 "b": note.fit.b,
-                "depth": note.fit.depth,
+                "gap": note.fit.gap,
                 "reason": note.fit.reason,
                 "holds": note.holds,
                 "note": note.note or None,
@@ -52,6 +54,15 @@ def in_cavity(row: Row) -> str | None:
     """Return the name of the body that is in a closed cavity of the other, if one is."""
     which = getattr(row.answer, "cavity", "")
     return str(row.answer.names["AB".index(which)]) if which else None
+
+
+def body_text(row: Row) -> list[str]:
+    """Return the names of the two bodies, each with that of its piece, and which is in a cavity."""
+    answer, within = row.answer, in_cavity(row)
+    return [
+        printable(" ".join(filter(None, each))) + (", in a cavity" if each[0] == within else "")
+        for each in zip(answer.names, answer.pieces, strict=True)
+    ]
 
 
 def row_facts(row: Row) -> dict[str, Any]:
@@ -70,6 +81,7 @@ def row_facts(row: Row) -> dict[str, Any]:
         "least_lower_bound": row.nearest.lower_bound,
         "touching_within": touching_tolerance(answer),
         "required": row.required,
-        "allowed": None if fit is None else {"depth": fit.depth, "reason": fit.reason},
+        "tolerance": row.tolerance,
+        "allowed": None if fit is None else {"gap": fit.gap, "reason": fit.reason},
         "failure": row.failure or None,
     }

@@ -14,6 +14,7 @@ import numpy as np
 
 from standoff.bodies.plain_data import without_roundoff
 from standoff.clearance.assembly import AssemblyFile, Source
+from standoff.clearance.facts import body_text
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
 from standoff.clearance.report import (
@@ -27,6 +28,7 @@ from standoff.clearance.report import (
     no_clearance,
     report_on,
     undecided,
+    within_tolerance,
 )
 from standoff.motion import Pose
 from standoff.scene.reader import Array
@@ -75,7 +77,8 @@ def page_of(scene: Source, report: Report, looked: Looked) -> str:
     if report.world.model.solids.any and report.world.dimension == 3:
         from standoff.clearance.assembly_picture import assembly_figure
 
-        picture = assembly_figure(shown, poses, unit)
+        colours = scene.colours if isinstance(scene, AssemblyFile) else {}
+        picture = assembly_figure(shown, poses, unit, colours)
     else:
         picture = world_figure(shown, poses, unit)
     heading = "The parts" if isinstance(scene, AssemblyFile) else f"The bodies at {at:g} s"
@@ -156,6 +159,8 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         lines.append(
             f"Every pair is proven to keep {at_least(report.least)} {unit}, or is allowed not to."
         )
+    if within_tolerance(report, unit):
+        lines.append(f"Of these {within_tolerance(report, unit)}.")
     if not report.certified:
         lines.append("<strong>Some answers are not certified.</strong> Their bounds hold.")
         lines += [f"{status.name}: {escape(status.advice)}" for status in report.statuses]
@@ -196,10 +201,7 @@ def _row(row: Row, number: str, *, timed: bool) -> str:
     answer = row.answer
     size = shown_size(answer)
     lower, upper = bound_texts(row)
-    bodies = "<br>".join(
-        escape(printable(" ".join(filter(None, each))))
-        for each in zip(answer.names, answer.pieces, strict=True)
-    )
+    bodies = "<br>".join(escape(text) for text in body_text(row))
     points = "<br>".join(_point(point, size) for point in (answer.point_a, answer.point_b))
     notes = [row.failure]
     if row.fit is not None:
@@ -212,7 +214,7 @@ def _row(row: Row, number: str, *, timed: bool) -> str:
         f'<td><span class="mark {row.verdict.name}">{row.verdict.name}</span></td>',
         f"<td>{bodies}</td>",
         f'<td class="number">{gap_text(answer)}</td>',
-        f"<td>{lower}<br>{upper}</td>",
+        f"<td>≥ {lower}<br>≤ {upper}</td>",
         f"<td>{points}</td>",
         *([f'<td class="number">{row.nearest.time:.6g}</td>'] if timed else []),
         f'<td class="note">{escape(printable("; ".join(filter(None, notes))))}</td>',
@@ -235,7 +237,7 @@ def _fits(report: Report, unit: str) -> str:
                 f"{note.fit.a} - {note.fit.b}",
                 note.fit.allowance(unit),
                 note.fit.reason,
-                note.note or "in contact, as allowed",
+                note.note or "as allowed",
             ]
         )
         + "</tr>"

@@ -15,12 +15,14 @@ from standoff.bodies.body import Body
 from standoff.bodies.drawing.body_view import FACE_COLOURS, across, direction_to_viewer, frame
 from standoff.bodies.drawing.pair_picture import USUAL_VIEW, seen_from
 from standoff.bodies.drawing.solids import Look, Solid, draw_solid, solid_of
+from standoff.bodies.tessellation import EdgeLine
 from standoff.bodies.tolerances import FLAT_CLOUD
 from standoff.clearance.report import Report, Row, gap_text
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import not_installed
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.solids.planar.loops import points_along
 from standoff.tracking import distance
 from standoff.wording import at_least, at_most, short_name
 from standoff.world import Compound, World
@@ -31,7 +33,8 @@ try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
+    from matplotlib.patches import Patch, PathPatch
+    from matplotlib.path import Path
     from matplotlib.patheffects import AbstractPathEffect, withStroke
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 except ModuleNotFoundError as error:
@@ -104,7 +107,8 @@ def world_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure
     else:
         _draw_spatial(figure, parts, looks, rows, unit)
     look: Any = {"frameon": False, "fontsize": "small", "borderaxespad": 0.6}
-    figure.legend(handles=bodies_legend(coloured), loc="lower left", ncols=2, **look)
+    own = {name: colour_of(name, coloured) for name in coloured}
+    figure.legend(handles=bodies_legend(coloured, own), loc="lower left", ncols=2, **look)
     figure.legend(handles=pairs_legend(rows, unit), loc="lower right", **look)
     return figure
 
@@ -122,9 +126,19 @@ def parts_of(world: World, poses: Mapping[str, Pose], coloured: Sequence[str]) -
         pieces = body.pieces.values() if isinstance(body, Compound) else [(body, Pose.identity())]
         for shape, pose in pieces:
             if id(shape) not in solids:
-                solids[id(shape)] = solid_of(boundary_of(shape))
+                solids[id(shape)] = _drawn(boundary_of(shape))
             parts.append(Part(name, solids[id(shape)], poses[name] @ pose))
     return parts
+
+
+def _drawn(shape: Any) -> Solid:
+    """A body's surface, or the edges of a planar solid."""
+    if not hasattr(shape, "outline"):
+        return solid_of(shape)
+    lines = [line for loop in shape.loops for line in points_along(loop)]
+    none, empty = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
+    edges = [EdgeLine(k, line, none[None], False) for k, line in enumerate(lines)]
+    return Solid(shape, np.concatenate(lines), none, empty, empty[:, 0], edges)
 
 
 def _looks(parts: Sequence[Part], rows: Sequence[Row], coloured: Sequence[str]) -> list[Look]:
@@ -239,7 +253,13 @@ def _draw_planar(
     for part, look in zip(parts, looks, strict=True):
         lines = [part.pose.apply(line.points)[:, :2] for line in part.solid.lines]
         if lines:
-            axes.fill(*np.concatenate(lines).T, color=look.colour, alpha=min(look.opacity, THROUGH))
+            # holes run the other way round, so they stay empty
+            ends = np.cumsum([len(loop.curves) for loop in getattr(part.solid.body, "loops", ())])
+            starts = [0, *ends[:-1]]
+            loops = [lines[i:j] for i, j in zip(starts, [*ends[:-1], len(lines)], strict=True)]
+            whole = Path.make_compound_path(*(Path(np.concatenate(loop)) for loop in loops))
+            fill = {"facecolor": look.colour, "alpha": min(look.opacity, THROUGH)}
+            axes.add_patch(PathPatch(whole, edgecolor="none", **fill))
         for line in lines:
             axes.plot(*line.T, color="black", linewidth=0.9)
         if not lines:
@@ -257,8 +277,8 @@ def _draw_planar(
     axes.grid(alpha=0.3)
 
 
-def bodies_legend(coloured: Sequence[str]) -> list[Artist]:
-    return [Patch(facecolor=colour_of(name, coloured), label=short_name(name)) for name in coloured]
+def bodies_legend(coloured: Sequence[str], colours: Mapping[str, Any]) -> list[Artist]:
+    return [Patch(facecolor=colours[name], label=short_name(name)) for name in coloured]
 
 
 def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:

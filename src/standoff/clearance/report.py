@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from standoff.bodies.plain_data import without_roundoff
 from standoff.bodies.tolerances import SHOWN_ROUNDOFF
-from standoff.clearance.fits import Fit
+from standoff.clearance.fits import Fit, fit_of
 from standoff.clearance.verdicts import Verdict, pair_slack, touching_tolerance, verdict_of
 from standoff.tracking.proximity import shown_size
 from standoff.tracking.status import Status
-from standoff.wording import at_least, at_most
+from standoff.wording import at_least, at_most, counted
 from standoff.world import PairAnswer, SolidPairAnswer, World, WorldAnswer
 
 MOST_BOUNDED = 20_000
@@ -53,11 +53,21 @@ class Wanted(NamedTuple):
     least : float or None
         The clearance that every pair must keep [length].
     fits : sequence of Fit or None
-        Contacts that are meant; if given, no other pair may overlap.
+        Fits that are meant; if given, no other pair may overlap.
+    tolerance : float or None
+        By how much what is proven may miss a clearance that is required [length], if the pair is
+        proven to be apart; None: by its touching tolerance.
     """
 
     least: float | None = None
     fits: Sequence[Fit] | None = None
+    tolerance: float | None = None
+
+    @property
+    def reach(self) -> float:
+        """The distance up to which it asks for more than a bound [length]."""
+        ends = (abs(end) for fit in self.fits or () for end in fit.gap)
+        return max(self.least or 0.0, *(end for end in ends if end < math.inf), 0.0)
 
 
 class Looked(NamedTuple):
@@ -89,6 +99,8 @@ class Row:
         What is allowed of it instead.
     failure : str
         Why it does not hold; empty where it does.
+    tolerance : float
+        By how much what is proven may miss what is required [length].
     """
 
     nearest: Nearest
@@ -96,6 +108,7 @@ class Row:
     required: float | None
     fit: Fit | None
     failure: str
+    tolerance: float
 
     @property
     def answer(self) -> PairAnswer | SolidPairAnswer:
@@ -106,6 +119,13 @@ class Row:
     def names(self) -> tuple[str, str]:
         """Of the bodies."""
         return self.answer.names
+
+    @property
+    def missing(self) -> float:
+        """What is missing of what it must keep and holds within the tolerance [length]."""
+        if self.failure or self.fit is not None or self.required is None:
+            return 0.0
+        return max(0.0, self.required - self.nearest.lower_bound)
 
 
 class Far(NamedTuple):
@@ -170,6 +190,11 @@ class Report:
         return (*found, *((far.names, far.failure) for far in self.far if far.failure))
 
     @property
+    def missing(self) -> float:
+        """What is missing at most of a clearance that holds within its tolerance [length]."""
+        return max((row.missing for row in self.rows), default=0.0)
+
+    @property
     def least_far(self) -> float:
         """The least bound of the far pairs [length]; inf where there are none."""
         return min((far.bound for far in self.far), default=math.inf)
@@ -200,10 +225,11 @@ def bounds_of(
     world: World, answer: WorldAnswer, near: Iterable[tuple[str, str]]
 ) -> dict[tuple[str, str], float]:
     """Return the proven bounds of all other pairs that count, in one frame."""
-    others = [names for names in world.pairs() if names not in set(near)]
+    known = set(near)
+    others = [names for names in world.pairs() if names not in known]
     if len(others) > MOST_BOUNDED:
         return {names: horizon(world, names) for names in others}
-    return {names: answer[names].lower_bound for names in others}
+    return {names: answer.lower_bound(names) for names in others}
 
 
 def horizon(world: World, names: tuple[str, str]) -> float:
@@ -228,11 +254,12 @@ def report_on(
         Of all other pairs that count: each is at least so far apart [length].
     wanted : Wanted
     """
-    fits = {fit.pair: fit for fit in wanted.fits or ()}
-    rows = [_row(world, nearest, wanted, fits) for nearest in near.values()]
+    fit = fit_of(wanted.fits or (), world.bodies)
+    rows = [_row(world, nearest, wanted, fit(names)) for names, nearest in near.items()]
     rows.sort(key=lambda row: (not row.failure, row.nearest.lower_bound))
+    of_far = {names: fit(names) for names in bounds} if wanted.fits else {}
     far = [
-        Far(names, bound, _far_failure(world, names, bound, wanted, fits))
+        Far(names, bound, _far_failure(world, names, bound, wanted, of_far.get(names)))
         for names, bound in bounds.items()
     ]
     far.sort(key=lambda each: (not each.failure, each.bound))
@@ -241,7 +268,7 @@ def report_on(
         -math.inf if row.verdict is Verdict.CONTAINED else row.nearest.lower_bound for row in rows
     ]
     lowest += [each.bound for each in far]
-    notes = tuple(_note(world, fit, rows, far) for fit in wanted.fits or ())
+    notes = tuple(_note(world, each, rows, far, of_far) for each in wanted.fits or ())
     clearance = min(lowest, default=math.inf)
     return Report(world, tuple(rows), tuple(far), notes, wanted.least, clearance)
 
@@ -257,22 +284,43 @@ def _required(world: World, names: tuple[str, str], wanted: Wanted) -> float | N
     return max(margin, wanted.least)
 
 
-def _row(world: World, nearest: Nearest, wanted: Wanted, fits: Mapping[frozenset[str], Fit]) -> Row:
-    names = nearest.answer.names
-    verdict, required = verdict_of(nearest.answer), _required(world, names, wanted)
-    fit, lower = fits.get(frozenset(names)), nearest.lower_bound
+def _row(world: World, nearest: Nearest, wanted: Wanted, fit: Fit | None) -> Row:
+    names, answer, lower = nearest.answer.names, nearest.answer, nearest.lower_bound
+    verdict, required = verdict_of(answer), _required(world, names, wanted)
+    tolerance = touching_tolerance(answer) if wanted.tolerance is None else wanted.tolerance
     failure = ""
     if verdict is Verdict.CONTAINED:
         if fit is not None or required is not None or wanted.fits is not None:
             failure = f"inside the other's material, the wall at least {at_least(lower)} thick"
     elif fit is not None:
-        if -lower > fit.depth + touching_tolerance(nearest.answer):
-            failure = f"up to {at_most(-lower)} deep, and {fit.depth:g} is allowed"
-    elif required is not None and lower < required:
+        failure = _not_allowed(fit, nearest)
+    elif required is not None and not _keeps(lower, required, tolerance):
         failure = not_kept(required, lower) + _nearly_kept(required, nearest)
     elif wanted.fits is not None and verdict in (Verdict.OVERLAPPING, Verdict.UNDECIDED):
         failure = f"{verdict.name.lower()}, and not among the fits that are allowed"
-    return Row(nearest, verdict, required, fit, failure)
+    return Row(nearest, verdict, required, fit, failure, tolerance)
+
+
+def _keeps(lower: float, required: float, tolerance: float) -> bool:
+    """Is a clearance proven? A tolerance is for bodies that are proven to be apart."""
+    return lower >= required or (lower > 0.0 and lower >= required - tolerance)
+
+
+def _not_allowed(fit: Fit, nearest: Nearest) -> str:
+    """Why a pair is not the fit that is meant; empty where it is proven to be."""
+    lower, upper = nearest.lower_bound, nearest.answer.upper_bound
+    (low, high), tolerance = fit.gap, touching_tolerance(nearest.answer)
+    if low - tolerance <= lower and upper <= high + tolerance:
+        return ""
+    if fit.contact:
+        return f"up to {at_most(-lower)} deep, and {-low:g} is allowed"
+    if upper < low - tolerance:
+        told = f"less than is allowed: at most {at_most(upper)}"
+    elif lower > high + tolerance:
+        told = f"more than is allowed: at least {at_least(lower)}"
+    else:
+        told = f"not proven to be what is allowed: {at_least(lower)} to {at_most(upper)}"
+    return f"a gap {told}, and {fit.allowance()} is meant"
 
 
 def gap_text(answer: PairAnswer | SolidPairAnswer, digits: int = 6) -> str:
@@ -285,6 +333,15 @@ def gap_text(answer: PairAnswer | SolidPairAnswer, digits: int = 6) -> str:
 def bound_texts(row: Row) -> tuple[str, str]:
     """Return the lower and the upper bound of a row, each rounded to its safe side."""
     return at_least(row.nearest.lower_bound), at_most(row.answer.upper_bound)
+
+
+def within_tolerance(report: Report, unit: str) -> str:
+    """What is said of pairs that keep what is asked within the tolerance; empty without one."""
+    count = sum(row.missing > 0.0 for row in report.rows)
+    if not count:
+        return ""
+    most = f"{at_most(report.missing, 3)} {unit}".rstrip()
+    return f"{counted(count, 'pair')} within the tolerance, less at most {most}"
 
 
 MET = "solids overlap, or one is inside another's material"
@@ -331,29 +388,45 @@ def _nearly_kept(required: float, nearest: Nearest) -> str:
 
 
 def _far_failure(
-    world: World,
-    names: tuple[str, str],
-    bound: float,
-    wanted: Wanted,
-    fits: Mapping[frozenset[str], Fit],
+    world: World, names: tuple[str, str], bound: float, wanted: Wanted, fit: Fit | None
 ) -> str:
+    if fit is not None:
+        if bound <= fit.gap[1]:
+            return ""
+        told = f"more than is allowed: at least {at_least(bound)}"
+        return f"a gap {told}, and {fit.allowance()} is meant"
     required = _required(world, names, wanted)
-    if frozenset(names) in fits or required is None or bound >= required:
-        return ""
-    return not_kept(required, bound)
+    return "" if required is None or bound >= required else not_kept(required, bound)
 
 
-def _note(world: World, fit: Fit, rows: Sequence[Row], far: Sequence[Far]) -> FitNote:
+def _note(
+    world: World,
+    fit: Fit,
+    rows: Sequence[Row],
+    far: Sequence[Far],
+    of_far: Mapping[tuple[str, str], Fit | None],
+) -> FitNote:
     """What became of a fit: in contact as deep as allowed, too deep, apart, or of no pair."""
-    unknown = fit.unknown(list(world.bodies))
-    if unknown:
-        return FitNote(fit, unknown, False)
+    found: list[tuple[tuple[str, str], str]] = []
     for row in rows:
         if row.fit is fit:
-            if row.verdict is Verdict.APART:
-                return FitNote(fit, f"not in contact: {gap_text(row.answer)} apart", False)
-            return FitNote(fit, row.failure, not row.failure)
+            loose = fit.contact and row.verdict is Verdict.APART
+            told = f"not in contact: {gap_text(row.answer)} apart" if loose else row.failure
+            found.append((row.names, told))
     for each in far:
-        if frozenset(each.names) == fit.pair:
-            return FitNote(fit, f"not in contact: at least {at_least(each.bound)} apart", False)
-    return FitNote(fit, "the pair does not count in this world", False)
+        if of_far.get(each.names) is fit:
+            told = f"not in contact: at least {at_least(each.bound)} apart"
+            found.append((each.names, told if fit.contact else each.failure))
+    if not found:
+        alone = fit_of([fit], world.bodies)
+        taken = any(map(alone, [row.names for row in rows] + [each.names for each in far]))
+        other = (
+            f"the pair {'is that of an earlier fit' if taken else 'does not count in this world'}"
+        )
+        return FitNote(fit, fit.unknown(world.bodies) or other, False)
+    bad = [(names, told) for names, told in found if told]
+    if len(found) == 1 or not bad:
+        return FitNote(fit, bad[0][1] if bad else "", not bad)
+    names, told = bad[0]
+    note = f"{len(bad)} of {len(found)} pairs: {' - '.join(names)} {told}"
+    return FitNote(fit, note + (", ..." if len(bad) > 1 else ""), False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
+    CacheCommand,
     CertifyCommand,
     CheckCommand,
     ClearanceCommand,
@@ -61,7 +62,12 @@ def _doing(command: Command) -> str:
 
 
 def _doing_without_a_scene(
-    command: RobotCommand | SweepCommand | AddedCommand | WarmupCommand | LibraryCommand,
+    command: RobotCommand
+    | SweepCommand
+    | AddedCommand
+    | WarmupCommand
+    | CacheCommand
+    | LibraryCommand,
 ) -> str:
     match command:
         case SweepCommand():
@@ -72,6 +78,8 @@ def _doing_without_a_scene(
             return f"reading {shown(command.model)}"
         case WarmupCommand():
             return f"loading all kernels; compiling all of them takes {takes(ALL_SECONDS)}"
+        case CacheCommand():
+            return ""
         case LibraryCommand():
             return ""  # reported by what builds it, from Python too
         case _:

@@ -10,7 +10,14 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
-from tyro.conf import FlagCreatePairsOff, OmitArgPrefixes, Positional, arg, subcommand
+from tyro.conf import (
+    FlagCreatePairsOff,
+    OmitArgPrefixes,
+    Positional,
+    UseAppendAction,
+    arg,
+    subcommand,
+)
 
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
@@ -18,6 +25,7 @@ from standoff.cli.option_groups import (
     AS_USUAL,
     NO_FILES,
     NO_FLAGS,
+    NO_INSTEAD,
     NO_PAPER_FLAGS,
     NO_SOLID_FLAGS,
     OWN_FRAMES,
@@ -27,6 +35,7 @@ from standoff.cli.option_groups import (
     FileFlags,
     FrameFlags,
     LawFlags,
+    MeshFlags,
     PaperFlags,
     ReportFlags,
     SceneFile,
@@ -112,8 +121,31 @@ class ClearanceFiles:
 
 
 @dataclass(frozen=True)
+class PairFlags:
+    """Which pairs are looked at, and how far."""
+
+    within: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Horizon: of pairs that are farther apart only that is proven. If not given, the scene's; else
+    --min; else as far as the closest pairs are."""
+    closest: Annotated[int | None, arg(metavar="N", help_behavior_hint="")] = None
+    """How many pairs these are, at least, and how many are listed without --verbose; 40 if not
+    given."""
+    parts: Annotated[
+        UseAppendAction[tuple[str, ...]], arg(metavar="NAME", help_behavior_hint="")
+    ] = ()
+    """Only bodies of this name, which may have wildcards, such as 'bolt*'; may be given again."""
+    pairs: Annotated[
+        UseAppendAction[tuple[tuple[str, str], ...]], arg(metavar="A B", help_behavior_hint="")
+    ] = ()
+    """Only pairs of a body A and a body B, as --parts; may be given again."""
+
+
+ALL_PAIRS = PairFlags()
+
+
+@dataclass(frozen=True)
 class ClearanceCommand:
-    """Report the proven clearance of all pairs of a scene's bodies or an assembly's parts.
+    """Report the proven clearance of all pairs of a scene's bodies or a file's parts.
 
     Example: standoff clearance examples/fits.toml --min 0.3 --allow examples/fits-allowed.toml
 
@@ -122,17 +154,21 @@ class ClearanceCommand:
     """
 
     scene: SceneFile
-    """Scene file; docs/scene-format.md describes the format."""
+    """Scene file (docs/scene-format.md), or a file of parts: CAD, DXF or meshes."""
     time: Annotated[float | None, arg(metavar="SECONDS", help_behavior_hint="")] = None
     """Scene time in s; the first frame's if not given."""
     motion: Annotated[bool, arg(help_behavior_hint="")] = False
     """Over all frames of the scene's times: the least of each pair, and when."""
-    within: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
-    """Horizon: of pairs that are farther apart only that is proven; the scene's if not given."""
+    scope: Annotated[PairFlags, group("pair")] = ALL_PAIRS
     min: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
     """The clearance that every pair must keep; margins in the scene hold besides."""
+    min_tolerance: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """By how much what is proven may miss it; the touching tolerance of the parts if not given."""
     allow: Annotated[Path | None, arg(metavar="FITS.toml", help_behavior_hint="")] = None
-    """Contacts that are meant; docs/clearance.md describes the format."""
+    """Fits that are meant; docs/clearance.md describes the format."""
+    meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
+    workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
+    """Processes that share the reading of an assembly's parts; 1 if not given."""
     files: Annotated[ClearanceFiles, group("file")] = ClearanceFiles()
     report: Annotated[ReportFlags, group("report")] = AS_USUAL
     cad: Annotated[CadFlags, group("CAD")] = READ_AS_IT_IS
@@ -148,13 +184,17 @@ class CheckCommand:
     """
 
     what: Annotated[Positional[str], arg(metavar="SCENE.toml|BODY.json|PART.step|SHAPE")]
-    """A scene, a file of patches, a CAD file (STEP, BREP or IGES), or a shape written as in a
-    scene, such as 'shape = "box", size = [1, 2, 3]'."""
+    """A scene, a file of patches, a CAD file (STEP, BREP or IGES), a DXF drawing, a file of meshes
+    (STL, OBJ, PLY or 3MF), or a shape written as in a scene, such as
+    'shape = "box", size = [1, 2, 3]'."""
     body: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
-    """Only this one of a scene's bodies or a CAD file's parts."""
+    """Only this one of a scene's bodies or a file's parts."""
+    meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
     """Draw the body with its features and normals, or a CAD file's part with its edges by kind, to
     this file (.png, .svg or .pdf); with several, each gets its own, OUT-NAME.png."""
+    workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
+    """Processes that share the reading of a CAD file's parts; 1 if not given."""
     json: Annotated[bool, arg(help_behavior_hint="")] = False
     """Print the report as JSON."""
     cad: Annotated[CadFlags, group("CAD")] = READ_AS_IT_IS
@@ -219,7 +259,7 @@ class SimulateCommand:
 
 @dataclass(frozen=True)
 class ViewCommand:
-    """Show a scene in the browser: drag a body, and watch witness points and distance.
+    """Show a scene or a file's parts in the browser: drag a body, and watch the distance.
 
     The scene of a simulation is run first, then played with all its contacts.
 
@@ -229,7 +269,7 @@ class ViewCommand:
     """
 
     scene: SceneFile
-    """Scene file; docs/scene-format.md describes the format."""
+    """Scene file (docs/scene-format.md), or a file of parts: CAD, DXF or meshes."""
     pair: Annotated[str | None, arg(metavar="NAME", help_behavior_hint="")] = None
     """This one of the scene's [[pairs]]; the first if not given."""
     host: Annotated[str, arg(metavar="HOST", help_behavior_hint="")] = "127.0.0.1"
@@ -243,6 +283,7 @@ class ViewCommand:
     0.3 of the smaller one's size if not given."""
     patch: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
     """Of such a pair: show the patch of each minimum, what is farther by no more than this."""
+    meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     open: Annotated[bool, arg(help_behavior_hint="")] = False
     """Open the page in the usual browser."""
 
@@ -293,6 +334,21 @@ class WarmupCommand:
 
 
 @dataclass(frozen=True)
+class CacheCommand:
+    """Tell where finished parts of CAD files are kept, and their size, or remove them.
+
+    Example: standoff cache --clear
+
+    Exit codes: 0 done, 1 a file could not be removed, 2 bad input.
+    """
+
+    clear: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Remove all of them: the next reading of each file makes its parts again."""
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print it as JSON."""
+
+
+@dataclass(frozen=True)
 class LibraryCommand:
     """Build the shared library and the header for programs in C and C++.
 
@@ -327,6 +383,7 @@ Command = (
     | SweepCommand
     | ServoCommand
     | WarmupCommand
+    | CacheCommand
     | LibraryCommand
     | AddedCommand
 )
@@ -345,6 +402,7 @@ OWN: dict[str, type] = {
     "sweep": SweepCommand,
     "servo": ServoCommand,
     "warmup": WarmupCommand,
+    "cache": CacheCommand,
     "c-library": LibraryCommand,
 }
 """The library's own commands, by name."""

@@ -7,6 +7,7 @@ from math import degrees
 
 from standoff.bodies.body import Body
 from standoff.bodies.report import BodyReport, BoundaryReport, DihedralAngle
+from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.solid import Solid
 from standoff.wording import counted
 
@@ -46,6 +47,23 @@ def solid_rows(solid: Solid, unit: str) -> Rows:
         ("slack", f"{report.slack:.3g} {unit}, taken off the certified lower bound"),
         *(("boundary", line) for line in solid.self_intersections.lines(unit)),
         *(("note", note) for note in report.notes),
+    ]
+
+
+def planar_rows(solid: PlanarSolid, unit: str) -> Rows:
+    """Return (what, found) pairs of a planar solid; `unit` labels lengths."""
+    kinds = Counter(solid.kinds)
+    vertices = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+    holes = len(solid.loops) - 1
+    after = f" {unit}" if unit else ""
+    return [
+        ("dimension", "2, planar"),
+        ("loops", f"{len(solid.loops)}, {counted(holes, 'hole')}"),
+        ("edges", str(solid.n_edges)),
+        ("vertices", f"{solid.n_edges}: {vertices}"),
+        ("size", f"{solid.size:.9g}{after}"),
+        ("area", f"{solid.area:.9g}{after and after + '²'}, to {solid.area_error:.2g}"),
+        ("slack", f"{solid.slack:.3g}{after}, taken off the certified lower bound"),
     ]
 
 

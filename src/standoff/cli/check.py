@@ -14,15 +14,16 @@ from rich.text import Text
 from standoff import __version__
 from standoff.bodies.body import Body
 from standoff.cli.arguments import CheckCommand
-from standoff.cli.body_report import report_rows, solid_rows
-from standoff.cli.check_cad import is_cad_file, no_cad_file, run_check_cad
+from standoff.cli.body_report import planar_rows, report_rows, solid_rows
+from standoff.cli.check_cad import no_cad_file
 from standoff.cli.errors import ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
+from standoff.cli.part_file import check_meshes
 from standoff.cli.subject import Subject, subjects
 from standoff.cli.terminal import tell
 from standoff.wording import printable
-from standoff.world.shapes import boundary_of
+from standoff.world.shapes import boundary_of, dimension_of_shape, is_solid
 
 WIDTH = 100
 """Characters of a table where stdout is not a terminal, such as a file."""
@@ -38,10 +39,9 @@ def run_check(command: CheckCommand) -> int:
     WriteError
         If a picture could not be written.
     """
-    if is_cad_file(command.what):
-        return run_check_cad(command)
     no_cad_file(command.what, command.cad)
-    found = subjects(command.what, command.body)
+    check_meshes(Path(command.what), command.meshes)
+    found = subjects(command)
     files = _files(found, command.plot)
     write_whole(files)
     if command.json:
@@ -72,6 +72,9 @@ def _writer(subject: Subject, ending: str) -> Writer:
         raise MissingExtra(str(error.name)) from error
 
     def write(file: BinaryIO) -> None:
+        if _is_planar_solid(subject.body):
+            subject.body.plot(unit=subject.unit).savefig(file, format=ending)
+            return
         body = boundary_of(subject.body)
         draw_body(body, body.check(), subject.name, subject.unit).savefig(file, format=ending)
 
@@ -86,8 +89,22 @@ def _json(found: list[Subject], files: list[Path]) -> str:
     return json_text({"standoff": __version__, "bodies": facts} | written)
 
 
+def _is_planar_solid(shape: Any) -> bool:
+    return is_solid(shape) and dimension_of_shape(shape) == 2
+
+
 def _facts(subject: Subject) -> dict[str, Any]:
     body = boundary_of(subject.body)
+    if _is_planar_solid(body):
+        return {
+            "body": subject.name,
+            "shape": body.name,
+            "convex": False,
+            "length_unit": subject.unit,
+            "report": {"dimension": 2, "loops": len(body.loops), "edges": body.n_edges}
+            | {key: getattr(body, key) for key in ("size", "area", "area_error", "slack")},
+            "notes": list(subject.notes),
+        }
     return {
         "body": subject.name,
         "shape": body.name,
@@ -96,6 +113,7 @@ def _facts(subject: Subject) -> dict[str, Any]:
         "radius": body.radius,
         "digest": body.digest,
         "report": asdict(body.check()),
+        "notes": list(subject.notes),
     }
 
 
@@ -109,11 +127,9 @@ def _table(subject: Subject) -> Table:
         box=SIMPLE_HEAD,
         pad_edge=False,
     )
-    rows = (
-        report_rows(body, subject.unit)
-        if isinstance(body, Body)
-        else solid_rows(body, subject.unit)
-    )
+    rows_of = report_rows if isinstance(body, Body) else solid_rows
+    rows = (planar_rows if _is_planar_solid(body) else rows_of)(body, subject.unit)
+    rows += [("file", note) for note in subject.notes]
     for what, found in rows:
         table.add_row(what, Text(printable(found)))  # as text: in markup "[unit]" is a style
     return table

@@ -7,10 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from standoff import __version__
-from standoff.cad.files import ENDINGS
 from standoff.cli.arguments import CheckCommand
 from standoff.cli.errors import CommandError, ExitCode, MissingExtra
-from standoff.cli.facts import json_text
 from standoff.cli.option_groups import READ_AS_IT_IS, CadFlags
 from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
 from standoff.cli.terminal import tell
@@ -21,11 +19,6 @@ if TYPE_CHECKING:
 
 MOST_NAMED = 8
 """Parts that a message names."""
-
-
-def is_cad_file(what: str) -> bool:
-    """Does an argument name a CAD file?"""
-    return Path(what).suffix.lower() in ENDINGS
 
 
 def no_cad_file(what: object, flags: CadFlags) -> None:
@@ -47,10 +40,15 @@ def run_check_cad(command: CheckCommand) -> int:
     WriteError
         If a picture could not be written.
     """
+    if command.meshes.hulls or command.meshes.pieces:
+        from standoff.cli.part_file import check_meshes
+
+        check_meshes(Path(command.what), command.meshes)
     try:
         from standoff.cad import read_cad
 
-        assembly = read_cad(Path(command.what), keep="readable", **asdict(command.cad))
+        how = asdict(command.cad) | {"workers": command.workers}
+        assembly = read_cad(Path(command.what), keep="readable", **how)
     except (StandoffError, OSError, ModuleNotFoundError) as error:
         raise CommandError(str(error)) from error
     chosen = _chosen(list(assembly), command.body)
@@ -65,6 +63,8 @@ def run_check_cad(command: CheckCommand) -> int:
         for target in files:
             tell(f"wrote {target}")
         return ExitCode.DONE
+    from standoff.cli.facts import json_text
+
     parts: list[dict[str, Any]] = [
         {
             "name": part.name,

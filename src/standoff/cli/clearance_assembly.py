@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from standoff.cad import read_cad
+from standoff.checks.units import conversion
 from standoff.clearance.assembly import AssemblyFile
+from standoff.clearance.checked_pairs import Scope, check
 from standoff.clearance.facts import report_facts
-from standoff.clearance.fits import load_fits
-from standoff.clearance.report import (
-    Looked,
-    Report,
-    Wanted,
-    bounds_of,
-    nearest_of,
-    report_on,
-)
+from standoff.clearance.report import Looked, Report, Wanted
 from standoff.cli.arguments import ClearanceCommand
+from standoff.cli.check_cad import no_cad_file
 from standoff.cli.clearance_files import check_files, files_of
 from standoff.cli.clearance_lines import print_report
+from standoff.cli.clearance_options import option_error, scope_of, wanted_by
 from standoff.cli.errors import CommandError, ExitCode
 from standoff.cli.facts import json_text
-from standoff.cli.option_groups import CadFlags
 from standoff.cli.output import write_whole
+from standoff.cli.part_file import is_part_file, parts_of
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
@@ -48,47 +43,58 @@ def run_on_assembly(command: ClearanceCommand) -> int:
     """
     if command.motion or command.time is not None:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")
-    wanted = Wanted(command.min, None if command.allow is None else load_fits(command.allow))
+    wanted = wanted_by(command)
     check_files(command)
-    file, parts = _read(command.scene, command.cad)
-    within = math.inf if command.within is None else command.within
-    if command.min is not None:
-        within = max(within, command.min)
-    report = _report(file, parts, within, wanted)
+    if is_part_file(command.scene):
+        no_cad_file(command.scene, command.cad)
+        file, parts = _read_parts(command)
+    else:
+        file, parts, _solids = _read(command)  # the world finds these as long as they are here
+    report = _report(file, parts, wanted, scope_of(command))
     write_whole(files_of(command, file, report, NOTHING_MOVES))
     written = [path for path in (command.files.page, command.files.plot) if path is not None]
     if command.report.json:
         tell(json_text(_facts(file, report, written)))
     else:
-        print_report(file, report, NOTHING_MOVES, written, verbose=command.report.verbose)
+        listed = None if command.report.verbose else scope_of(command).closest
+        print_report(file, report, NOTHING_MOVES, written, listed)
     return ExitCode.NOT_CERTIFIED if report.failures else ExitCode.DONE
 
 
-def _report(file: AssemblyFile, parts: dict[str, Any], within: float, wanted: Wanted) -> Report:
+def _report(file: AssemblyFile, parts: dict[str, Any], wanted: Wanted, scope: Scope) -> Report:
     try:
-        world = World(parts, within=within)
-        with progress_bar() as progress:
-            answer = world.distances(file.poses(world, 0.0), progress)
+        world = World(parts)
+        with progress_bar("distances of pairs") as progress:
+            return check(world, file.poses(world, 0.0), wanted, scope, progress=progress)
     except StandoffError as error:
-        raise CommandError(str(error)) from error
-    near = nearest_of(answer, 0.0)
-    return report_on(world, near, bounds_of(world, answer, near), wanted)
+        raise option_error(error) or CommandError(str(error)) from error
 
 
-def _read(path: Path, cad: CadFlags) -> tuple[AssemblyFile, dict[str, Any]]:
-    """The file, and the parts in their own frames."""
+def _read_parts(command: ClearanceCommand) -> tuple[AssemblyFile, dict[str, Any]]:
+    """A file of a drawing or of meshes, and its parts in their own frames."""
+    read = parts_of(command.scene, command.meshes)
+    places = {name: part.pose for name, part in read.found.items()}
+    parts = {name: part.shape for name, part in read.found.items()}
+    return AssemblyFile(command.scene, command.scene.name, read.unit, read.notes, places), parts
+
+
+def _read(command: ClearanceCommand) -> tuple[AssemblyFile, dict[str, Any], list[Any]]:
+    """A CAD file, its parts in their own frames, and their solids where some are not convex:
+    beside these convex parts are asked as solids too, which the store may have."""
     try:
-        assembly = read_cad(path, **asdict(cad))
+        assembly = read_cad(command.scene, workers=command.workers, **asdict(command.cad))
         parts = assembly.by_name
         places = {name: Pose.of(part.pose) for name, part in parts.items()}
+        bodies = {name: part.body for name, part in parts.items()}
+        mixed = not all(part.report.convex for part in parts.values())
+        solids = [part.solid for part in parts.values()] if mixed else []
     except (StandoffError, OSError) as error:
         raise CommandError(str(error)) from error
-    if assembly.file_unit and assembly.file_unit != assembly.unit:
-        notes: tuple[str, ...] = (f"lengths were converted from {assembly.file_unit}",)
-    else:
-        notes = ()
-    file = AssemblyFile(path, assembly.source, assembly.unit, notes, places)
-    return file, {name: part.shape for name, part in parts.items()}
+    converted = conversion(assembly.unit, assembly.file_unit)
+    notes = (f"lengths were {converted}",) if converted else ()
+    colours = {name: part.colour[:3] for name, part in parts.items() if part.colour is not None}
+    file = AssemblyFile(command.scene, assembly.source, assembly.unit, notes, places, colours)
+    return file, bodies, solids
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:

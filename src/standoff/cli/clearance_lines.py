@@ -12,8 +12,17 @@ from rich.table import Table
 from rich.text import Text
 
 from standoff.clearance.assembly import AssemblyFile, Source
-from standoff.clearance.facts import in_cavity
-from standoff.clearance.report import Looked, Report, Row, bound_texts, gap_text, no_clearance
+from standoff.clearance.facts import body_text
+from standoff.clearance.report import (
+    Far,
+    Looked,
+    Report,
+    Row,
+    bound_texts,
+    gap_text,
+    no_clearance,
+    within_tolerance,
+)
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.summary import line, time_text, vector_text
 from standoff.cli.terminal import tell
@@ -22,9 +31,6 @@ from standoff.wording import at_least, counted, printable
 
 WIDTH = 120
 """Characters of a table where stdout is not a terminal, such as a file."""
-
-FIRST_ROWS = 40
-"""How many near pairs are listed; all of them with ``--verbose`` and in ``--json``."""
 
 POINT_DIGITS = 5
 """Of the closest points; those in ``--json`` have all."""
@@ -40,17 +46,19 @@ STYLES = {
 
 
 def print_report(
-    scene: Source, report: Report, looked: Looked, written: Sequence[Path], *, verbose: bool = False
+    scene: Source, report: Report, looked: Looked, written: Sequence[Path], listed: int | None
 ) -> None:
-    """Print a report: what was looked at, the table of near pairs, and what follows from it."""
+    """Print a report: what was looked at, the table of near pairs, of them only the first `listed`
+    where that is given, else with all that are far, and what follows from it."""
     tell("\n".join(_head(scene, report, looked)))
-    if report.rows:
+    far = report.far if listed is None else ()
+    if report.rows or far:
         console = Console(highlight=False)
         if not console.is_terminal:
             console = Console(width=WIDTH, highlight=False)
-        shown = report.rows if verbose else report.rows[:FIRST_ROWS]
-        console.print(_table(shown, scene.length_unit, timed=looked.frames > 1))
-    tell("\n".join(_tail(scene, report, looked, written, verbose=verbose)))
+        rows = report.rows[:listed]
+        console.print(_table(rows, far, scene.length_unit, timed=looked.frames > 1))
+    tell("\n".join(_tail(scene, report, looked, written, listed)))
 
 
 def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
@@ -75,7 +83,7 @@ def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
     ]
 
 
-def _table(rows: Sequence[Row], unit: str, *, timed: bool) -> Table:
+def _table(rows: Sequence[Row], far: Sequence[Far], unit: str, *, timed: bool) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     table.add_column("verdict")
     table.add_column("bodies", overflow="fold")
@@ -93,16 +101,10 @@ def _table(rows: Sequence[Row], unit: str, *, timed: bool) -> Table:
             Text(_points(row)),
         ]
         table.add_row(*cells, *([time_text(row.nearest.time)] if timed else []))
+    for each in far:
+        names = "\n".join(map(printable, each.names))
+        table.add_row(Verdict.APART.name, Text(names), "", f"≥ {at_least(each.bound)}")
     return table
-
-
-def body_text(row: Row) -> list[str]:
-    """Return the names of the two bodies, each with that of its piece, and which is in a cavity."""
-    answer, within = row.answer, in_cavity(row)
-    return [
-        printable(" ".join(filter(None, each))) + (", in a cavity" if each[0] == within else "")
-        for each in zip(answer.names, answer.pieces, strict=True)
-    ]
 
 
 def _proven(row: Row) -> str:
@@ -118,16 +120,15 @@ def _points(row: Row) -> str:
 
 
 def _tail(
-    scene: Source, report: Report, looked: Looked, written: Sequence[Path], *, verbose: bool
+    scene: Source, report: Report, looked: Looked, written: Sequence[Path], listed: int | None
 ) -> list[str]:
     unit = scene.length_unit
     lines = []
-    hidden = 0 if verbose else max(0, len(report.rows) - FIRST_ROWS)
+    hidden = () if listed is None else report.rows[listed:]
     if hidden:
-        least = min(row.nearest.lower_bound for row in report.rows[FIRST_ROWS:])
-        lines.append(
-            line("not listed", f"{counted(hidden, 'pair')}, {at_least(least)} {unit} or more")
-        )
+        least = min(row.nearest.lower_bound for row in hidden)
+        told = f"{counted(len(hidden), 'pair')}, {at_least(least)} {unit} or more"
+        lines.append(line("not listed", told))
     if report.far:
         count, bound = counted(len(report.far), "pair"), f"{at_least(report.least_far)} {unit}"
         lines.append(line("far", f"{count}, proven to be {bound} or more apart"))
@@ -145,6 +146,8 @@ def _tail(
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))
     if not report.failures and report.least is not None:
         lines.append(line("keeps", f"{at_least(report.least)} {unit} in every pair, proven"))
+    if within_tolerance(report, unit):
+        lines.append(line("keeps" if report.failures else "", within_tolerance(report, unit)))
     for k, note in enumerate(report.fits):
         fit = note.fit
         said = f"; {note.note}" if note.note else ""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from standoff.cad.files import is_cad_file
 from standoff.cli.added import AddedCommand
 from standoff.cli.arguments import (
     AutomatonCommand,
+    CacheCommand,
     CertifyCommand,
     CheckCommand,
     ClearanceCommand,
@@ -54,6 +56,10 @@ def run(command: Command) -> int:
             from standoff.cli.certify import run_certify
 
             return run_certify(command)
+        case CheckCommand() if is_cad_file(command.what):
+            from standoff.cli.check_cad import run_check_cad
+
+            return run_check_cad(command)
         case CheckCommand():
             from standoff.cli.check import run_check
 
@@ -79,7 +85,12 @@ def run(command: Command) -> int:
 
 
 def _run_without_a_scene(
-    command: RobotCommand | SweepCommand | WarmupCommand | LibraryCommand | AddedCommand,
+    command: RobotCommand
+    | SweepCommand
+    | WarmupCommand
+    | CacheCommand
+    | LibraryCommand
+    | AddedCommand,
 ) -> int:
     match command:
         case SweepCommand():
@@ -94,6 +105,10 @@ def _run_without_a_scene(
             from standoff.cli.warmup import run_warmup
 
             return run_warmup(command)
+        case CacheCommand():
+            from standoff.cli.cache import run_cache
+
+            return run_cache(command)
         case LibraryCommand():
             from standoff.cli.c_library import run_c_library
 

@@ -5,18 +5,20 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from standoff import __version__
 from standoff.bodies import plain_data
-from standoff.impact import Impact
-from standoff.recording import RecordedEvent, Recording
-from standoff.scene import Scene, TrackSettings
-from standoff.scene.simulation import SimulationScene
-from standoff.solids.answer import SolidProximity
-from standoff.tracking import Proximity
+
+if TYPE_CHECKING:
+    from standoff.impact import Impact
+    from standoff.recording import RecordedEvent, Recording
+    from standoff.scene import Scene, TrackSettings
+    from standoff.scene.simulation import SimulationScene
+    from standoff.solids.answer import SolidProximity
+    from standoff.tracking import Proximity
 
 INDENT = 2
 """Spaces a level of the JSON text."""
@@ -81,6 +83,8 @@ OF_SOLIDS = (
 
 def answer_facts(scene: Scene, time: float, answer: Proximity | SolidProximity) -> dict[str, Any]:
     """Return one answer."""
+    from standoff.solids.answer import SolidProximity
+
     if isinstance(answer, SolidProximity):
         facts = answer.as_dict()
         return scene_facts(scene) | {"time": time} | {name: facts[name] for name in OF_SOLIDS}

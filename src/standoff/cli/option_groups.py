@@ -138,6 +138,19 @@ NO_SOLID_FLAGS = SolidFlags()
 
 
 @dataclass(frozen=True)
+class MeshFlags:
+    """What stands for the meshes of a file, which must be convex without it."""
+
+    hulls: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Take their hulls."""
+    pieces: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Take convex pieces of them, by CoACD, which are not exactly the meshes."""
+
+
+NO_INSTEAD = MeshFlags()
+
+
+@dataclass(frozen=True)
 class RobotFlags:
     """How a robot's model is read."""
 

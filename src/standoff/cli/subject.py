@@ -1,40 +1,49 @@
-"""What ``standoff check`` is asked about: a scene, a file of patches, or a shape in a line."""
+"""What ``standoff check`` is asked about: a scene, a file of patches, a DXF drawing or meshes, or a
+shape in a line."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from standoff.cli.errors import CommandError
+from standoff.cli.part_file import parts_of
 from standoff.scene import SceneError, load_scene
 from standoff.scene.file_content import DEFAULT_LENGTH_UNIT
 from standoff.scene.files import file_problem, toml_tables
+from standoff.scene.part_files import ENDINGS
 from standoff.scene.reader import Table, shown, unknown_name
 from standoff.scene.shapes import read_body
 from standoff.scene.worlds import by_piece
+
+if TYPE_CHECKING:
+    from standoff.cli.arguments import CheckCommand
 
 EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"
 
 
 class Subject(NamedTuple):
-    """A body or a solid to report on, what it is called, and the label of its lengths."""
+    """A body or a solid to report on, what it is called, the label of its lengths, and what was
+    found when its file was read."""
 
     name: str
     body: Any
     unit: str
+    notes: tuple[str, ...] = ()
 
 
-def subjects(what: str, body: str | None) -> list[Subject]:
-    """Return the bodies that a command names; `body` picks one of a scene's.
+def subjects(command: CheckCommand) -> list[Subject]:
+    """Return the bodies that a command names; its `body` picks one of them.
 
     Raises
     ------
     CommandError
-        If `what` names no scene, no file of patches and no shape, or the scene has no such body.
+        If it names no scene, no file and no shape, or what it names has no such body.
     SceneError
         If the scene or the shape is refused.
     """
+    what, body = command.what, command.body
     path = Path(what)
     if "=" in what and not os.path.exists(path):
         found = [_shape(what)]
@@ -42,6 +51,10 @@ def subjects(what: str, body: str | None) -> list[Subject]:
         scene = load_scene(path)
         bodies = by_piece(scene.bodies)
         found = [Subject(name, made, scene.length_unit) for name, made in bodies.items()]
+    elif path.suffix.lower() in ENDINGS:
+        parts = parts_of(path, command.meshes)
+        shapes = by_piece({name: part.shape for name, part in parts.found.items()})
+        found = [Subject(name, made, parts.unit, parts.notes) for name, made in shapes.items()]
     elif path.suffix.lower() == ".json":
         problem = file_problem(path, what, "the current folder")
         if problem is not None:
@@ -51,7 +64,7 @@ def subjects(what: str, body: str | None) -> list[Subject]:
     else:
         raise CommandError(
             f"{shown(what)} is not a scene (.toml), a file of patches (.json) or a shape such as "
-            f"{EXAMPLE}"
+            f"{EXAMPLE}, nor a file of parts ({', '.join(ENDINGS)})"
         )
     if body is None:
         return found

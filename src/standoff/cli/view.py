@@ -7,15 +7,18 @@ from typing import Any
 
 from standoff.cli.arguments import ViewCommand
 from standoff.cli.errors import CommandError, ExitCode
+from standoff.cli.part_file import check_meshes, parts_of
 from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.errors import StandoffError
 from standoff.scene import Scene, SceneError, load_scene
 from standoff.scene.file_content import is_simulation
+from standoff.scene.part_files import ENDINGS
 from standoff.view.gallery import scenes_in
 from standoff.view.minima_asked import MinimaAsked
-from standoff.view.moving_world import MovingWorld
+from standoff.view.moving_world import MovingWorld, moving_world
 from standoff.view.opening import Shown, has_solids, of_scene, page_of, simulation_of
+from standoff.world import World
 
 
 def run_view(command: ViewCommand) -> int:
@@ -28,6 +31,9 @@ def run_view(command: ViewCommand) -> int:
     SceneError
         If the scene is not usable.
     """
+    check_meshes(command.scene, command.meshes)
+    if command.scene.suffix.lower() in ENDINGS:
+        return _serve(command, *_file(command))
     if is_simulation(command.scene):
         return _serve(command, *_simulation(command))
     scene = load_scene(command.scene)
@@ -52,6 +58,20 @@ def run_view(command: ViewCommand) -> int:
     asked = MinimaAsked(command.minima, command.patch)
     others = scenes_in(command.gallery or scene.file.parent)
     return _serve(command, what, scene.title, {"others": others, "asked": asked})
+
+
+def _file(command: ViewCommand) -> tuple[Shown, str, dict[str, Any]]:
+    """The parts of a file where it has them, and its name."""
+    for name in ("pair", "gallery", "minima", "patch"):
+        if getattr(command, name) is not None:
+            raise CommandError(f"--{name}: the page of a file shows all its parts; leave it out")
+    parts = parts_of(command.scene, command.meshes)
+    for note in (*parts.notes, *parts.refusals):
+        tell(note)
+    shapes = {name: part.shape for name, part in parts.found.items()}
+    places = {name: part.pose for name, part in parts.found.items()}
+    world = moving_world(World(shapes), places)
+    return world._replace(title=command.scene.name, unit=parts.unit), command.scene.name, {}
 
 
 def _simulation(command: ViewCommand) -> tuple[Shown, str, dict[str, Any]]:

@@ -86,38 +86,28 @@ def min_gain(
     standoff.control.euler_min_gain : with the feedforward.
     """
     check_pair(a, b)
-    error, speed, spin = positive(error, "error"), *_motion(speed, spin)
-    least, most = _range(distance)
-    skins = a.radius + b.radius
-    motion = speed + (spin * reach(b) if spin else 0.0), spin
-    lag = _greatest_lag(a, b, (least + skins, most + skins), motion)
-    pairs: Any = (start or (1.0, 1.0), "start = (error, time)"), (step, "step = (name, dt)")
-    for given, form in pairs:
-        if not isinstance(given, tuple) or len(given) not in (2, 3 if given is start else 2):
-            raise StandoffError(f"Give {form}, not {shown(given)}.", form.split(" ")[0], given)
-    wanted = _Wanted(error, lag, *_checked_start(start))
-    integrator, dt = step
-    # errors lag by at most |w_ff|/K: by Heun's method at all stable gains, by the others up to 1/dt
-    limit = stability_limit(integrator)
-    z = np.linspace(0.0, limit if integrator == "heun" else 1.0, 2002)[1:-1]
-    gain, short = wanted.least_gain(z, integrator, positive(dt, "dt")), dt
-    while gain is None:
-        short *= 0.5
-        gain = wanted.least_gain(z, integrator, short)
-    if short < dt:
-        raise StandoffError(
-            f"error = {error}: no gain is enough with {integrator} at dt = {dt}, where they end at "
-            f"{limit / dt:.6g} (so.max_gain). A step of {short:.3g} would do, with a gain of "
-            f"{gain:.6g}; with this step one keeps {wanted.worst(z, integrator, dt).min():.3g}."
-        )
-    return gain
+    error, motion, least_most = positive(error, "error"), _motion(speed, spin), _range(distance)
+    wanted = _Wanted(error, _greatest_lag(a, b, least_most, *motion), *_checked_start(start))
+    integrator, dt = _pair(step, "step = (name, dt)")
+    return wanted.gain(integrator, positive(dt, "dt"))
+
+
+def _pair(given: Any, form: str, more: int = 0) -> tuple[Any, ...]:
+    """A pair of values, or a tuple of up to so many more."""
+    if not isinstance(given, tuple) or not 2 <= len(given) <= 2 + more:
+        raise StandoffError(f"Give {form}, not {shown(given)}.", form.split(" ")[0], given)
+    return given
 
 
 def _checked_start(start: Any) -> tuple[float, float]:
     """A start's error and time; no error if there is none."""
     if start is None:
         return 0.0, math.inf
-    named = zip(("start's error", "start's time", "start's basin"), start, strict=False)
+    named = zip(
+        ("start's error", "start's time", "start's basin"),
+        _pair(start, "start = (error, time)", 1),
+        strict=False,
+    )
     far, time, *basin = (positive(x, name, infinite="basin" in name) for name, x in named)
     if basin and far > basin[0]:
         raise StandoffError(
@@ -150,6 +140,25 @@ class _Wanted(NamedTuple):
         left = np.abs(growth_factor(integrator, -z)) ** steps
         return np.asarray(lag + np.maximum(left * (self.start - lag), 0.0))
 
+    def gain(self, integrator: str, dt: float) -> float:
+        """The least gain that is enough, inf if none ever is; an error with the step that would do
+        if none is stable with this one."""
+        # errors lag by at most |w_ff|/K: by Heun's method at all stable gains, by others up to 1/dt
+        limit = stability_limit(integrator)
+        z = np.linspace(0.0, limit if integrator == "heun" else 1.0, 2002)[1:-1]
+        gain, short = self.least_gain(z, integrator, dt), dt
+        while gain is None:
+            short *= 0.5
+            gain = self.least_gain(z, integrator, short)
+        if short < dt:
+            kept = self.worst(z, integrator, dt).min()
+            raise StandoffError(
+                f"error = {self.error}: no gain is enough with {integrator} at dt = {dt}, where "
+                f"they end at {limit / dt:.6g} (so.max_gain). A step of {short:.3g} would do, with "
+                f"a gain of {gain:.6g}; with this step one keeps {kept:.3g}."
+            )
+        return gain
+
     def least_gain(self, z: Array, integrator: str, dt: float) -> float | None:
         """The least gain that is enough among K dt = z, inf if none ever is, None if none of z."""
         if math.isinf(self.lag) or (self.lag == 0.0 and self.start <= self.error):
@@ -165,15 +174,15 @@ class _Wanted(NamedTuple):
         return float(scipy.optimize.brentq(excess, *ends, xtol=np.finfo(float).tiny)) / dt
 
 
-def _greatest_lag(
-    a: Body, b: Body, among: tuple[float, float], motion: tuple[float, float]
-) -> float:
+def _greatest_lag(a: Body, b: Body, among: tuple[float, float], speed: float, spin: float) -> float:
     """The greatest speed that either witness point can have, with what a late release adds."""
+    skins = a.radius + b.radius
     curvatures = least_curvature(a).value, least_curvature(b).value
-    speeds = witness_speeds(*curvatures, among, *motion)
-    waits = (0.0, 0.0)
+    cores = among[0] + skins, among[1] + skins
+    motion = speed + (spin * reach(b) if spin else 0.0), spin
+    speeds, waits = witness_speeds(*curvatures, cores, *motion), (0.0, 0.0)
     if _switches(a) or _switches(b):
-        waits = release_speeds(*curvatures, among, *motion)
+        waits = release_speeds(*curvatures, cores, *motion)
     return max(speed + wait for speed, wait in zip(speeds, waits, strict=True))
 
 

@@ -3,11 +3,27 @@
 The format is described in ``docs/scene-format.md``.
 """
 
-from standoff.scene.errors import SceneError
-from standoff.scene.motions import Motion
-from standoff.scene.run import first_impact, prepare, query, record
-from standoff.scene.scene import Scene, load_scene
-from standoff.scene.settings import TrackSettings
+from typing import TYPE_CHECKING
+
+from standoff.on_demand import on_demand
+
+if TYPE_CHECKING:
+    from standoff.scene.errors import SceneError
+    from standoff.scene.motions import Motion
+    from standoff.scene.run import first_impact, prepare, query, record
+    from standoff.scene.scene import Scene, load_scene
+    from standoff.scene.settings import TrackSettings
+else:
+    __getattr__, __dir__ = on_demand(
+        __name__,
+        {
+            "standoff.scene.errors": ("SceneError",),
+            "standoff.scene.motions": ("Motion",),
+            "standoff.scene.run": ("first_impact", "prepare", "query", "record"),
+            "standoff.scene.scene": ("Scene", "load_scene"),
+            "standoff.scene.settings": ("TrackSettings",),
+        },
+    )
 
 __all__ = [
     "Motion",

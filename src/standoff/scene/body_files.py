@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from standoff.bodies.body import Body
-from standoff.motion import Pose
+from standoff.cad.files import ENDINGS as CAD
 from standoff.scene.files import existing_file
-from standoff.scene.reader import Array, Table, unknown_name
+from standoff.scene.part_files import (
+    ENDINGS,
+    MESHES,
+    WITHOUT_UNIT,
+    FileParts,
+    FromFile,
+    file_parts,
+    from_file,
+)
+from standoff.scene.reader import Table, unknown_name
 from standoff.wording import printable
-from standoff.world.shapes import Shape, as_shape
 
-KEYS = ("body", "part", "heal", "tolerance")
+if TYPE_CHECKING:
+    from standoff.bodies.meshes.files import InsteadOf
+
+OF_KINDS = ("heal", "hull", "pieces")
+"""How files of some kinds are read."""
+
+KEYS = ("body", "part", "tolerance", *OF_KINDS)
 """Of a body that is read from a file."""
 
 UNITS = {"mm": "mm", "cm": "cm", "m": "m", "in": "inch", "inch": "inch"}
@@ -25,31 +37,6 @@ UNITS = {"mm": "mm", "cm": "cm", "m": "m", "in": "inch", "inch": "inch"}
 KEPT = ".json"
 """Ending of the files of ``so.solids.save_boundary``."""
 
-FILES = 8
-"""Number of CAD files kept at hand: reading one takes seconds, and each body names one part."""
-
-
-class FromFile(NamedTuple):
-    """A part of a file.
-
-    Attributes
-    ----------
-    name : str
-    shape : Body or Solid
-    pose : Pose
-        Of its frame in the file's.
-    """
-
-    name: str
-    shape: Shape
-    pose: Pose
-
-    @property
-    def stays(self) -> bool:
-        """Is its frame the file's?"""
-        pose = self.pose
-        return bool(np.array_equal(pose.rotation, np.eye(3)) and not pose.translation.any())
-
 
 def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromFile:
     """Return the part that a table with ``body`` names.
@@ -57,7 +44,7 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
     Parameters
     ----------
     table : Table
-        With ``body``, and optionally ``part``, ``heal`` and ``tolerance``.
+        With ``body``, and optionally ``part``, ``heal``, ``tolerance``, ``hull`` and ``pieces``.
     unit : str
         The scene's label of lengths.
     beside : sequence of str
@@ -71,31 +58,37 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
     """
     table.expect(*KEYS, *beside)
     path = existing_file(table, "body", 'body = "part.step"')
-    heal = table.true_or_false("heal") if "heal" in table else False
+    heal, hull, pieces = (key in table and table.true_or_false(key) for key in OF_KINDS)
     tolerance = table.positive("tolerance") if "tolerance" in table else None
+    if hull and pieces:
+        raise table.error("give 'hull' or 'pieces', not both", "pieces")
+    instead: InsteadOf = "hull" if hull else "pieces" if pieces else ""
     ending = path.suffix.lower()
     if ending == KEPT:
-        for key in ("part", "heal", "tolerance"):
+        for key in ("part", "tolerance", *OF_KINDS):
             if key in table:
-                raise table.error("is for CAD files: a file of Standoff's own has one part", key)
+                raise table.error("is for other files: one of Standoff's own has one part", key)
         return table.build(lambda: _kept(path), "body")
-    from standoff.cad.files import ENDINGS
-
     if ending not in ENDINGS:
         known = ", ".join((*ENDINGS, KEPT))
         raise table.error(
             f"'{path.name}' is no file of a part: its name must end in {known}", "body"
         )
-    if unit not in UNITS and ENDINGS[ending] != "brep":
+    for key in ("hull", "pieces"):
+        if key in table and ending not in MESHES:
+            raise table.error("is for files of meshes", key)
+    for key in ("heal", "tolerance"):
+        if key in table and ending not in CAD:
+            raise table.error("is for CAD files", key)
+    if unit not in UNITS and ending not in WITHOUT_UNIT:
         raise table.error(
-            f"lengths of a CAD file can't be converted to '{unit}': write length_unit = "
+            f"lengths of a file of parts can't be converted to '{unit}': write length_unit = "
             f'"mm", or one of {", ".join(UNITS)}, at the top of the scene',
             "body",
         )
-    written = path.stat()
-    version = written.st_mtime_ns, written.st_size
-    how = UNITS.get(unit, "mm"), heal, tolerance
-    parts = table.build(lambda: _parts(path, version, *how), "body")
+    lengths = UNITS.get(unit, "mm")
+    how = {"heal": heal, "tolerance": tolerance, "instead": instead}
+    parts = table.build(lambda: file_parts(path, lengths, **how), "body")
     return _chosen(table, parts)
 
 
@@ -103,38 +96,10 @@ def _kept(path: Path) -> FromFile:
     """A file of ``so.solids.save_boundary``."""
     from standoff.solids.boundary_file import open_boundary
 
-    return _from_file(path.stem, open_boundary(path), np.eye(4))
+    return from_file(path.stem, open_boundary(path), np.eye(4))
 
 
-def _from_file(name: str, given: Any, pose: Array) -> FromFile:
-    shape = as_shape(given)
-    assert shape is not None  # a reader gives boundaries and bodies
-    if isinstance(shape, Body) and not np.array_equal(pose, np.eye(4)):
-        return FromFile(name, shape.transformed(pose), Pose.identity())
-    return FromFile(name, shape, Pose.of(pose))
-
-
-class _Parts(NamedTuple):
-    """Those of a CAD file, by name, and why others were refused, each with its name first."""
-
-    found: Mapping[str, FromFile]
-    refusals: tuple[str, ...]
-
-
-@lru_cache(maxsize=FILES)
-def _parts(
-    path: Path, version: tuple[int, int], unit: str, heal: bool, tolerance: float | None
-) -> _Parts:
-    """The parts of a CAD file; `version` is when it was written, and its length."""
-    del version
-    from standoff.cad.reading import read_cad
-
-    read = read_cad(path, unit=unit, heal=heal, keep="readable", tolerance=tolerance)
-    found = {name: _from_file(name, part.shape, part.pose) for name, part in read.by_name.items()}
-    return _Parts(found, read.refusals)
-
-
-def _chosen(table: Table, parts: _Parts) -> FromFile:
+def _chosen(table: Table, parts: FileParts) -> FromFile:
     """The part that is named, or the only one."""
     found = parts.found
     if "part" in table:

@@ -50,6 +50,12 @@ def _piece(table: Table, unit: str) -> tuple[Shape, Pose]:
     """A shape with the keys of a pose beside its own: of the piece in the compound's frame."""
     if "body" in table:
         part = read_file_body(table, unit, POSE_KEYS)
+        if isinstance(part.shape, Compound):
+            raise table.error(
+                "the convex pieces of a mesh are a compound, and a piece is one shape: let the "
+                "mesh be a body of its own, or give hull = true",
+                "pieces",
+            )
         return part.shape, read_pose(table.only(POSE_KEYS)) @ part.pose
     if "shape" in table and table.text("shape") == COMPOUND:
         raise table.error(

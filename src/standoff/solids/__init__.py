@@ -15,6 +15,7 @@ if TYPE_CHECKING:
         SolidProximity,
     )
     from standoff.solids.boundary_file import open_boundary, save_boundary
+    from standoff.solids.planar.drawing import Drawing
     from standoff.solids.planar.dxf import read_dxf
     from standoff.solids.planar.solid import PlanarSolid
     from standoff.solids.query import distance
@@ -39,6 +40,7 @@ else:
                 "SolidProximity",
             ),
             "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
+            "standoff.solids.planar.drawing": ("Drawing",),
             "standoff.solids.planar.dxf": ("read_dxf",),
             "standoff.solids.planar.solid": ("PlanarSolid",),
             "standoff.solids.query": ("distance",),
@@ -57,6 +59,7 @@ else:
 
 __all__ = [
     "Continuum",
+    "Drawing",
     "LocalMinima",
     "MinimumEvent",
     "NearestPair",

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
-import signal
-import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from standoff.checks.numbers import whole_number
 from standoff.errors import StandoffError
-from standoff.kernels.compiler.notices import QUIET
 from standoff.progress import Progress
 from standoff.sweep.cluster import made_on_cluster
 from standoff.sweep.folder import (
@@ -38,6 +33,7 @@ from standoff.sweep.report import Report, report_facts
 from standoff.sweep.shard import NotThisShard
 from standoff.sweep.work import Token, Work
 from standoff.whole_files import file_name
+from standoff.worker_processes import result_of, worker_processes
 
 Tell = Callable[[str], None]
 
@@ -197,56 +193,14 @@ def _made(work: Work, folder: Path, missing: Sequence[int], workers: int) -> Ite
     # Here, so that one process compiles what is not compiled yet.
     work.try_one(missing[0])
     given = work.token, os.path.abspath(folder)
-    with _processes(min(workers, len(missing))) as pool:
+    with worker_processes(min(workers, len(missing))) as pool:
         left, running = list(reversed(missing)), set[Future[int]]()
         while left or running:
             while left and len(running) < AHEAD * workers:
                 running.add(pool.submit(_work, *given, left.pop()))
             ended, running = wait(running, return_when=FIRST_COMPLETED)
             for each in ended:
-                yield _result(each)
-
-
-def _result(ended: Future[int]) -> int:
-    try:
-        return ended.result()
-    except BrokenProcessPool as error:
-        raise OSError(
-            "a worker's process ended by itself, as when memory runs out; run the same command "
-            "again to go on, with fewer --workers if it happens again"
-        ) from error
-
-
-@contextmanager
-def _processes(workers: int) -> Iterator[ProcessPoolExecutor]:
-    # spawn: a fork would copy the locks of the threads of Numba and of the progress bar
-    pool = ProcessPoolExecutor(
-        workers,
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=_begin,
-    )
-    try:
-        yield pool
-    except BaseException:
-        # A shard that is half done is given up: its file is not there.
-        for process in list((pool._processes or {}).values()):
-            process.terminate()
-        raise
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _begin() -> None:
-    """Make a new process a worker, which ends with its parent."""
-    os.environ[QUIET] = "1"
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what an interrupt ends
-    threading.Thread(target=_follow_parent, daemon=True).start()
-
-
-def _follow_parent() -> None:
-    parent: Any = multiprocessing.parent_process()
-    parent.join()
-    os._exit(1)
+                yield result_of(each)  # of one that was given up there is no file
 
 
 def _work(token: Token, folder: str, k: int) -> int:

@@ -87,7 +87,7 @@ class BodyNodes:
             self._skin = self._mesh("skin", shape.skin, self._plain, OPACITY)
         if len(shape.drawn):
             self._lines("edges", shape.segments(), EDGE_COLOUR, 1.5)
-        if corners and len(shape.vertices) and not shape.body.radius:
+        if corners and len(shape.vertices) and not shape.radius:
             self._points("vertices", shape.vertices, EDGE_COLOUR, 1.0)
 
     def place(self, pose: Pose) -> None:
@@ -122,7 +122,7 @@ class BodyNodes:
             node = self._drawn(feature)
             self._active = (feature, self._glass), node
         if node is not None and feature.kind in ("edge", "vertex"):
-            node.position = tuple(self._shape.body.radius * outward)
+            node.position = tuple(self._shape.radius * outward)
 
     def _drawn(self, feature: Feature) -> Any:
         part = self._shape.of(feature)

@@ -23,8 +23,7 @@ from standoff.scene.settings import TrackSettings
 from standoff.view.minima_asked import MinimaAsked
 from standoff.view.moving_world import MovingWorld, moving_world, world_of_scene
 from standoff.world import World
-from standoff.world.packed import pieces_of
-from standoff.world.shapes import Shape, as_shape, dimension_of_shape, is_solid
+from standoff.world.shapes import Shape, as_shape, is_solid
 
 if TYPE_CHECKING:
     from standoff.view.served import ServedPage
@@ -141,22 +140,9 @@ def page_of(
         from standoff.view.simulation_page import SimulationPage
 
         return SimulationPage(what, host=host, port=port)
-    _refuse_planar_solids(what.world)
     from standoff.view.world_page import WorldPage
 
     return WorldPage(what, host=host, port=port)
-
-
-def _refuse_planar_solids(world: World) -> None:
-    for name, body in world.bodies.items():
-        for piece in pieces_of(body):
-            if is_solid(piece.body) and dimension_of_shape(piece.body) == 2:
-                raise StandoffError(
-                    f"{name!r} is or has a planar solid, and the live page draws planar convex "
-                    "bodies and solids in space: `standoff clearance --page` draws it.",
-                    "bodies",
-                    body,
-                )
 
 
 def has_solids(scene: Scene) -> bool:

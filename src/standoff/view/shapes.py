@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import FaceMesh, edge_lines, face_meshes
+from standoff.solids.planar.loops import points_along
+from standoff.solids.planar.solid import PlanarSolid
 from standoff.view.tolerances import LIFT
 from standoff.world.shapes import boundary_of
 
@@ -35,7 +37,7 @@ class Shape:
 
     Attributes
     ----------
-    body : Boundary
+    body : Boundary or PlanarSolid
     skin : Mesh or None
         The whole surface; None of a planar body, and of a point or segment without a radius.
     faces : dict of int to Mesh
@@ -51,7 +53,7 @@ class Shape:
         Of that box.
     """
 
-    body: Boundary
+    body: Boundary | PlanarSolid
     skin: Mesh | None
     faces: dict[int, Mesh]
     edges: dict[int, Array]
@@ -59,6 +61,11 @@ class Shape:
     vertices: Array
     size: float
     middle: Array
+
+    @property
+    def radius(self) -> float:
+        """Swept over the body [length]; 0 of a planar solid."""
+        return self.body.radius if isinstance(self.body, Boundary) else 0.0
 
     def segments(self) -> Array:
         """Return all edges that are seen as pieces of line, (n, 2, 3)."""
@@ -82,7 +89,7 @@ def shape_of(given: Any) -> Shape:
 
     Parameters
     ----------
-    given : Body, Solid or Boundary
+    given : Body, Solid, PlanarSolid or Boundary
         Of a solid that need not be convex its boundary is shown.
 
     Returns
@@ -90,6 +97,8 @@ def shape_of(given: Any) -> Shape:
     Shape
     """
     body = boundary_of(given)
+    if hasattr(body, "outline"):
+        return _flat_shape(body)
     meshes, lines = face_meshes(body, fine=True), edge_lines(body)
     vertices = np.asarray(body.vertex_points, dtype=float).reshape(-1, 3)
     cloud = [vertices, *(line.points for line in lines), *(mesh.points for mesh in meshes)]
@@ -109,6 +118,16 @@ def shape_of(given: Any) -> Shape:
         size,
         0.5 * (low + high),
     )
+
+
+def _flat_shape(solid: PlanarSolid) -> Shape:
+    """Of a planar solid its edges, as of any planar body."""
+    lines = [line for loop in solid.loops for line in points_along(loop)]
+    low, high = np.min([x.min(0) for x in lines], 0), np.max([x.max(0) for x in lines], 0)
+    edges = dict(enumerate(lines))
+    vertices = np.array([line[0] for line in lines])
+    size, middle = float(np.linalg.norm(high - low)), 0.5 * (low + high)
+    return Shape(solid, None, {}, edges, tuple(edges), vertices, size, middle)
 
 
 def _pieces(points: Array) -> Array:

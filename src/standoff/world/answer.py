@@ -90,11 +90,10 @@ class WorldAnswer(KeepsReadOnly):
 
     def __getitem__(self, names: tuple[str, str]) -> PairAnswer | SolidPairAnswer:
         i, j = self._pair(names)
-        number, groups = self.model.pair_number(i, j), self._rows.numbers
-        at = int(np.searchsorted(groups, number))
-        if at < len(groups) and groups[at] == number:
-            return self._rows.answer(int(self._rows.nearest[at]), turned=i > j)
-        return self._far(i, j)
+        row = self._near(i, j)
+        if row is None:
+            return self._rows.far(i, j, self._bound_of_far(i, j))
+        return self._rows.answer(row, turned=i > j)
 
     def minima(
         self, names: tuple[str, str], below: float = math.inf
@@ -114,6 +113,12 @@ class WorldAnswer(KeepsReadOnly):
         rows = rows[np.argsort(self.state.known[rows, W.C_UPPER], kind="stable")]
         found = (self._rows.answer(int(row), turned=i > j, alone=True) for row in rows)
         return tuple(answer for answer in found if answer.distance < below)
+
+    def lower_bound(self, names: tuple[str, str]) -> float:
+        """The proven lower bound of two bodies' signed distance, near or far, length."""
+        i, j = self._pair(names)
+        row = self._near(i, j)
+        return self._bound_of_far(i, j) if row is None else self._rows.answer(row).lower_bound
 
     def _pair(self, names: Any) -> tuple[int, int]:
         """The numbers of two bodies whose pair counts.
@@ -136,8 +141,14 @@ class WorldAnswer(KeepsReadOnly):
             )
         return i, j
 
-    def _far(self, i: int, j: int) -> PairAnswer | SolidPairAnswer:
-        """The answer of a pair that is beyond its horizon."""
+    def _near(self, i: int, j: int) -> int | None:
+        """The row of two bodies' nearest pieces; None where they are beyond their horizon."""
+        number, groups = self.model.pair_number(i, j), self._rows.numbers
+        at = int(np.searchsorted(groups, number))
+        return int(self._rows.nearest[at]) if at < len(groups) and groups[at] == number else None
+
+    def _bound_of_far(self, i: int, j: int) -> float:
+        """Of a pair that is beyond its horizon: it is at least so far apart."""
         search, state, square = self.model.search, self.state, self.model.most**2
         bound = kernels.apart_by_boxes(search.pieces[:], state.placed, i, j)
         key = self.model.pair_number(i, j) * square
@@ -150,7 +161,7 @@ class WorldAnswer(KeepsReadOnly):
             bound = max(bound, known if whole else min(known, search.reach))
         else:
             bound = max(bound, search.reach)
-        return self._rows.far(i, j, bound)
+        return float(bound)
 
     def __repr__(self) -> str:
         return f"<WorldAnswer: {len(self.pairs)} near pairs, clearance {self.clearance:.6g}>"

@@ -17,7 +17,7 @@ from standoff.world.given import mapping_of, names_of
 from standoff.world.model import Model
 from standoff.world.poses import GivenPoses, read_poses_of
 from standoff.world.rules import Given
-from standoff.world.state import WorldState
+from standoff.world.state import KeptSolids, WorldState
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -125,11 +125,13 @@ def carried_rows(n: int, before: WorldState, numbers: Ints) -> Array:
     return placed
 
 
-def carried_table(world: Model, before: WorldState, numbers: Ints, keeps_rows: bool) -> Table:
+def carried_table(
+    world: Model, before: WorldState, numbers: Ints, keeps_rows: bool
+) -> tuple[Table, KeptSolids]:
     """What an old state knows of the pairs that a new world has too.
 
-    The answer of a pair is kept where `keeps_rows` and its bodies stand in the same order; else its
-    bounds alone.
+    The answer of a pair is kept where `keeps_rows`, or one body is a solid, and its bodies stand in
+    the same order; else its bounds alone.
     """
     search = world.search
     pieces, rules = search.pieces, search.rules
@@ -143,9 +145,17 @@ def carried_table(world: Model, before: WorldState, numbers: Ints, keeps_rows: b
     number = i * len(world.listed) + j
     within = (a - pieces.first[i]) * world.most + b - pieces.first[j]
     ints, known = before.ints[both], before.known[both]
+    old_keys = np.where(turned, -1, ints[:, W.I_KEY]).tolist()
     ints[:, W.I_KEY] = number * world.most**2 + within
     ints[:, W.I_A], ints[:, W.I_B] = a, b
     known[:, W.C_HORIZON] = np.maximum(search.within, rules.margins_of(number))
     ints[turned | (not keeps_rows), W.I_ROW] = -1
     order = np.argsort(ints[:, W.I_KEY], kind="stable")
-    return Table(ints[order], known[order])
+    keys = dict(zip(old_keys, ints[:, W.I_KEY].tolist(), strict=True))
+    found, fronts = before.solids.pieces, before.solids.fronts
+    kept = KeptSolids(
+        {keys[key]: found[key] for key in keys.keys() & found.keys()},
+        {},
+        {keys[key]: fronts[key] for key in keys.keys() & fronts.keys()},
+    )
+    return Table(ints[order], known[order]), kept

@@ -37,27 +37,35 @@ def started_state(
     """The state of a first frame."""
     before = empty_placed(len(world.search.pieces.owners)).placed
     moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1, progress)
-    return _sought(world, given, before, (NO_PAIRS, ()), moment)
+    return _sought(world, given, before, (NO_PAIRS, NO_SOLIDS), (), moment)
 
 
 def carried_state(
-    world: Model, old: Model, before: WorldState, given: GivenPoses, keeps_rows: bool, dt: float
+    world: Model,
+    old: Model,
+    before: WorldState,
+    given: GivenPoses,
+    keeps_rows: bool,
+    dt: float,
+    progress: Progress | None = None,
 ) -> WorldState:
     """The state of a world after that of another with some of its bodies: no time passes, and the
     answers of the pairs that both have hold where their bodies are not moved."""
     numbers = carried_pieces(world, old)
     placed = carried_rows(len(world.search.pieces.owners), before, numbers)
-    known = carried_table(world, before, numbers, keeps_rows), before.pages
+    known = carried_table(world, before, numbers, keeps_rows)
     may_rest = not before.has_twist
-    moment = Moment(before.frame + 1, before.time, dt, NO_TWISTS, False, may_rest, world.minima, 1)
-    return _sought(world, given, placed, known, moment)
+    frame, minima = before.frame + 1, world.minima
+    moment = Moment(frame, before.time, dt, NO_TWISTS, False, may_rest, minima, 1, progress)
+    return _sought(world, given, placed, known, before.pages, moment)
 
 
 def _sought(
     world: Model,
     given: GivenPoses,
     before: Array,
-    known: tuple[Table, tuple[Array, ...]],
+    known: tuple[Table, KeptSolids],
+    pages: tuple[Array, ...],
     moment: Moment,
 ) -> WorldState:
     """The state of a frame in which the pairs of all pieces are sought, and what is known of some
@@ -67,7 +75,7 @@ def _sought(
     tree = first_tree(search, frame)
     frame.sought[:] = 1
     table = table_of(search, frame, tree, known[0])
-    asked = _asked(world, given, (frame, table), (known[1], NO_SOLIDS), moment)
+    asked = _asked(world, given, (frame, table), (pages, known[1]), moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 

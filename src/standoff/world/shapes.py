@@ -22,13 +22,14 @@ Shape: TypeAlias = Any
 
 
 def as_shape(given: Any) -> Shape | None:
-    """A body or a solid as it is, a boundary as a solid; None of anything else."""
+    """A body or a solid as it is, a boundary as a solid, the same one each time; None of
+    anything else."""
     if isinstance(given, Body):
         return given
     if isinstance(given, Boundary):
-        from standoff.solids.spatial.solid import Solid
+        from standoff.solids.spatial.solid import solid_of
 
-        return Solid(given)
+        return solid_of(given)
     # a compound can be asked too, but is made of pieces
     return given if isinstance(given, Queried) and not hasattr(given, "pieces") else None
 

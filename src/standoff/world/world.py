@@ -219,7 +219,14 @@ class World(KeepsReadOnly):
         given = self._read(poses)
         return started_state(self.model, given, self._twists(twists, given))
 
-    def start_from(self, world: World, state: WorldState, poses: Any = None) -> WorldState:
+    def start_from(
+        self,
+        world: World,
+        state: WorldState,
+        poses: Any = None,
+        *,
+        progress: Progress | None = None,
+    ) -> WorldState:
         """A state of this world where that of another is: what is known of the pairs that both
         have is kept, and only the others are asked anew.
 
@@ -233,6 +240,8 @@ class World(KeepsReadOnly):
             Of the other one; it is not changed.
         poses : mapping of str to pose, optional
             World poses of the moving bodies that enter. The others stay where they are.
+        progress : callable, optional
+            Told how many pairs with a solid are done, and of how many.
 
         Returns
         -------
@@ -249,7 +258,7 @@ class World(KeepsReadOnly):
         world.check_state(state)
         old, same_law = world.model, self.law == world.law
         given = carried_poses(self.model, old, state, poses)
-        return carried_state(self.model, old, state, given, same_law, self.dt)
+        return carried_state(self.model, old, state, given, same_law, self.dt, progress)
 
     def step(
         self,

@@ -72,7 +72,7 @@ def read_mesh(mesh: Any) -> Mesh:
     notes = []
     points, triangles, merged = _merged(points, triangles)
     if merged:
-        notes.append(f"{merged} points equal to others are one with them")
+        notes.append(f"{merged} points within {MESH_CORNER:g} of others are one with them")
     a, b, c = triangles.T
     flat = (a == b) | (b == c) | (c == a)
     if flat.any():
@@ -110,7 +110,7 @@ def _merged(points: Array, triangles: Ints) -> tuple[Array, Ints, int]:
 
 def _arrays(mesh: Any) -> tuple[Array, Ints]:
     if isinstance(mesh, str | Path):
-        mesh = _loaded(Path(mesh))
+        mesh = mesh_scene(Path(mesh)).to_mesh()
     if isinstance(mesh, tuple | list) and len(mesh) == 2:
         vertices, faces = mesh
     elif hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
@@ -136,15 +136,31 @@ def _arrays(mesh: Any) -> tuple[Array, Ints]:
     return points, given.astype(np.int64)
 
 
-def _loaded(path: Path) -> Any:
+def mesh_scene(path: Path) -> Any:
+    """The meshes of a file with their places, a ``trimesh.Scene``, as the file has them.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        trimesh, or what it needs for this kind of file, is not installed.
+    FileNotFoundError
+    StandoffError
+        A file that it can't read.
+    """
     try:
         import trimesh
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(not_installed("trimesh", "meshes"), name=error.name) from error
     if not os.path.isfile(path):
         raise FileNotFoundError(f"There is no mesh file {shown(str(path))}.")
+    # else trimesh makes one of all objects of a file
+    apart: dict[str, Any] = {"split_objects": True} if path.suffix.lower() == ".obj" else {}
     try:
-        return trimesh.load(path, force="mesh", process=False)
+        return trimesh.load_scene(path, process=False, **apart)
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            not_installed(str(error.name), "meshes"), name=error.name
+        ) from error
     except Exception as error:  # each of its many readers raises its own
         raise StandoffError(f"{path} was not read as a mesh: {error}", "mesh", path) from error
 

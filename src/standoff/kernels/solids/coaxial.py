@@ -2,19 +2,38 @@
 that a whole circle of nearest pairs is closed at once."""
 
 from math import inf
+from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, axpy, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.spatial_likeness import off_axis, turning
-from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints
-from standoff.kernels.solids.spatial_tolerances import NEARLY_COAXIAL, NEARLY_STRAIGHT
-from standoff.kernels.solids.torus_potential import CIRCLE_OF, CONE_OF, TORUS_THROUGH, Potential
+from standoff.kernels.solids.round_axis import arc_axis, arc_offset
+from standoff.kernels.solids.spatial_likeness import (
+    moved_line,
+    off_axis,
+    own_kind,
+    turning,
+)
+from standoff.kernels.solids.spatial_pieces import ZERO, leaf_ints, leaf_reals
+from standoff.kernels.solids.spatial_tolerances import (
+    ALONG_OWN,
+    NEARLY_COAXIAL,
+    NEARLY_STRAIGHT,
+)
+from standoff.kernels.solids.torus_potential import (
+    AXIS_OF,
+    CIRCLE_OF,
+    CONE_OF,
+    TORUS_THROUGH,
+    Potential,
+)
 
 NO_POTENTIAL = Potential(CONE_OF, ZERO, ZERO, ZERO, ZERO, 0.0, 0.0, 1.0)
 # Radii over the size from which on a circle counts as a line: its potential would lose digits.
 LARGEST_RADIUS = 30.0
+# Pieces of a flat face's trimming curves that are looked at for an axis.
+MOST_ARCS = 8
 
 
 @kernel
@@ -24,19 +43,63 @@ def is_flat(side, leaf):
 
 
 @kernel
+def is_one_line(point, axis, other_point, other_axis, size):
+    near = abs(dot(axis, other_axis)) >= 1.0 - NEARLY_COAXIAL
+    return near and off_axis(other_point, point, axis) <= NEARLY_COAXIAL * size
+
+
+@kernel
+def trim_axis(side, leaf, k):
+    """(known, point, axis) of the k-th piece of a leaf's trimming curves, if it is an arc."""
+    own = side.own
+    piece = own[own[S.LISTS] + own[leaf_ints(side, leaf) + S.LIST] + k]
+    arc = arc_offset(side, own[own[S.PIECES] + S.PIECE_INTS * piece + 1])
+    return arc_axis(side, arc) if arc >= 0 else (False, ZERO, ZERO)
+
+
+@kernel
+def n_arcs(side, leaf):
+    """Of a flat face: how many pieces of its trimming curves are looked at for an axis."""
+    return min(side.own[leaf_ints(side, leaf) + S.N_LIST], MOST_ARCS) if is_flat(side, leaf) else 0
+
+
+@kernel
+def is_cut_about(side, leaf, point, axis, size):
+    """Is a flat face trimmed by an arc about nearly a line?"""
+    for k in range(n_arcs(side, leaf)):
+        known, other_point, other_axis = trim_axis(side, leaf, k)
+        if known and is_one_line(point, axis, other_point, other_axis, size):
+            return True
+    return False
+
+
+@kernel
+def turns_about(part, point, axis, n, size):
+    """Does a part turn about nearly a line? A plane turns about each of its normals, which here is
+    n, and its rim about its own axis."""
+    known, own_point, own_axis = turning(part.side, part.leaf)
+    if known:
+        return is_one_line(point, axis, own_point, own_axis, size)
+    if not is_flat(part.side, part.leaf):
+        return False
+    if abs(dot(axis, n)) >= 1.0 - NEARLY_COAXIAL:
+        return True
+    return is_cut_about(part.side, part.leaf, point, axis, size)
+
+
+@kernel
 def common_axis(a, b, n, size):
-    """(known, point, axis) about which both of two parts nearly turn; a plane turns about each of
-    its normals, which here is n."""
-    known_a, point_a, axis_a = turning(a.side, a.leaf)
-    known_b, point_b, axis_b = turning(b.side, b.leaf)
-    if known_a and known_b:
-        near = abs(dot(axis_a, axis_b)) >= 1.0 - NEARLY_COAXIAL
-        near = near and off_axis(point_b, point_a, axis_a) <= NEARLY_COAXIAL * size
-        return near, point_a, axis_a
-    if known_a and is_flat(b.side, b.leaf):
-        return abs(dot(axis_a, n)) >= 1.0 - NEARLY_COAXIAL, point_a, axis_a
-    if known_b and is_flat(a.side, a.leaf):
-        return abs(dot(axis_b, n)) >= 1.0 - NEARLY_COAXIAL, point_b, axis_b
+    """(known, point, axis) about which both of two parts nearly turn."""
+    known, point, axis = turning(a.side, a.leaf)
+    if known:
+        return turns_about(b, point, axis, n, size), point, axis
+    known, point, axis = turning(b.side, b.leaf)
+    if known:
+        return turns_about(a, point, axis, n, size), point, axis
+    for k in range(n_arcs(a.side, a.leaf)):
+        known, point, axis = trim_axis(a.side, a.leaf, k)
+        if known and is_cut_about(b.side, b.leaf, point, axis, size):
+            return True, point, axis
     return False, ZERO, ZERO
 
 
@@ -58,34 +121,94 @@ def snapped(nr, nz):
     return nr, nz
 
 
+class Meridian(NamedTuple):
+    """Half way between two points, in the half plane from an axis through there.
+
+    Attributes
+    ----------
+    point, axis : of the line about which both parts turn.
+    z, rho, out : the place: along the axis, away from it, and the direction away from it.
+    nr, nz : the normal there, away from the axis and along it.
+    half : of the way from one point to the other.
+    """
+
+    point: Any
+    axis: Any
+    z: Any
+    rho: Any
+    out: Any
+    nr: Any
+    nz: Any
+    half: Any
+
+
 @kernel
-def coaxial_between(x, y, n, frame, shapes, line, limit, size):
-    """(known, potential) half way from x to y: a cone or a ring about a line (point, axis), whose
-    curvature in the meridian plane lies between those of both shapes."""
-    point, axis = line
+def in_meridian(x, y, n, point, axis):
+    """(known, meridian): half way from x to y, with a normal that lies nearly in its plane."""
     middle = sub(scale(0.5, add(x, y)), point)
     z = dot(middle, axis)
     radial = axpy(-z, axis, middle)
     rho = norm(radial)
-    if rho <= 0.0:
-        return False, NO_POTENTIAL
-    out = scale(1.0 / rho, radial)
+    out = scale(1.0 / rho, radial) if rho > 0.0 else ZERO
     nr, nz = dot(n, out), dot(n, axis)
     length = sqrt(nr * nr + nz * nz)
-    if length < 1.0 - NEARLY_COAXIAL:
+    known = rho > 0.0 and length >= 1.0 - NEARLY_COAXIAL
+    if known:
+        nr, nz = snapped(nr / length, nz / length)
+    half = 0.5 * max(dot(sub(y, x), n), 0.0)
+    return known, Meridian(point, axis, z, rho, out, nr, nz, half)
+
+
+@kernel
+def own_straight(side, leaf, at, n):
+    """(known, potential) of the cylinder or the cone that a leaf lies on, along n: exact, where a
+    normal between two points has as few digits as they are near."""
+    kind = own_kind(side, leaf)
+    if kind not in (AXIS_OF, CONE_OF):
         return False, NO_POTENTIAL
-    nr, nz = snapped(nr / length, nz / length)
-    e = axpy(-nz, out, scale(nr, axis))
+    o, m = leaf_reals(side, leaf) + S.NATURAL_REALS, side.numbers
+    point, axis = moved_line(side, o + 3)
+    slope = dot(at.out, n)
+    if kind == CONE_OF:
+        slope = m[o + 1] * slope - m[o + 2] * dot(axis, n)
+    sign = 1.0 if slope > 0.0 else -1.0
+    phi = Potential(kind, point, ZERO, ZERO, axis, m[o + 1], m[o + 2], sign)
+    return abs(slope) >= 1.0 - ALONG_OWN, phi
+
+
+@kernel
+def straight_about(at):
+    """A potential that is constant on a cone about a line, or on a cylinder."""
+    if at.nz == 0.0:
+        return Potential(AXIS_OF, at.point, ZERO, ZERO, at.axis, 0.0, 0.0, at.nr)
+    foot = axpy(at.z, at.axis, at.point)
+    return Potential(CONE_OF, foot, ZERO, ZERO, at.axis, at.nr, -at.nz, 1.0)
+
+
+@kernel
+def straight_through(a, leaf_a, b, leaf_b, at, n):
+    """The same through two points: that of a leaf of theirs if there is one."""
+    known, phi = own_straight(a, leaf_a, at, n)
+    if known:
+        return phi
+    known, phi = own_straight(b, leaf_b, at, n)
+    return phi if known else straight_about(at)
+
+
+@kernel
+def coaxial_between(at, frame, shapes, limit, size):
+    """The potential there: a cone or a ring about the axis, whose curvature in the meridian plane
+    lies between those of both shapes."""
+    e = axpy(-at.nz, at.out, scale(at.nr, at.axis))
     sa, sb = across_meridian(shapes[0], frame, e), across_meridian(shapes[1], frame, e)
-    d = 0.5 * max(dot(sub(y, x), n), 0.0)
+    d = at.half
     sa = sa / (1.0 + d * sa) if 1.0 + d * sa > 0.1 else sa
     sb = sb / (1.0 + d * sb) if 1.0 + d * sb > 0.1 else sb
     spare = min(0.5 * (sa + sb), limit)
     k = sa - spare if abs(sa) <= abs(sb) else spare - sb
     radius = 1.0 / abs(k) if k != 0.0 else inf
     if radius > LARGEST_RADIUS * size:
-        foot = axpy(z, axis, point)
-        return True, Potential(CONE_OF, foot, ZERO, ZERO, axis, nr, -nz, 1.0)
-    foot = axpy(z - nz / k, axis, point)
+        return straight_about(at)
+    foot = axpy(at.z - at.nz / k, at.axis, at.point)
     sign = 1.0 if k > 0.0 else -1.0
-    return True, Potential(CIRCLE_OF, foot, ZERO, ZERO, axis, rho - nr / k, radius, sign)
+    return Potential(CIRCLE_OF, foot, ZERO, ZERO, at.axis, at.rho - at.nr / k, radius, sign)

@@ -3,7 +3,7 @@
 from math import cos, inf, sin
 
 from standoff.kernels.algebra.roots import sqrt
-from standoff.kernels.algebra.vectors import axpy, dot, norm, rotate, scale, sub
+from standoff.kernels.algebra.vectors import axpy, cross, dot, norm, rotate, scale, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import chart_record, edge_record
 from standoff.kernels.compiler.decorators import kernel
@@ -40,6 +40,18 @@ def axis_data(side, leaf):
 
 
 @kernel
+def arc_offset(side, feature):
+    """Where the affine map of a conic edge stands in reals; -1: it is none."""
+    first = side.ints[L.N_FACES]
+    if not first <= feature < first + side.ints[L.N_EDGES]:
+        return -1
+    e = edge_record(side.ints, feature)
+    if side.ints[e + L.EDGE_KIND] != L.CONIC:
+        return -1
+    return side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
+
+
+@kernel
 def arc_data(side, arc):
     """The same of a conic edge, whose affine map is at reals[arc:]: known if it is a circle's."""
     m, R, p = side.reals, side.pose.R, side.pose.p
@@ -51,6 +63,15 @@ def arc_data(side, arc):
     known = abs(dot(first, other)) <= ROUND_CONIC * square
     known = known and abs(dot(other, other) - square) <= ROUND_CONIC * square
     return known, c, first, other, ZERO
+
+
+@kernel
+def arc_axis(side, arc):
+    """(known, point, axis) about which a conic edge turns, if it is a circle's."""
+    known, c, first, other, _ = arc_data(side, arc)
+    axis = cross(first, other)
+    size = norm(axis)
+    return known and size > 0.0, c, scale(1.0 / size, axis) if size > 0.0 else ZERO
 
 
 @kernel

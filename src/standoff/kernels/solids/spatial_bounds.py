@@ -7,7 +7,6 @@ from standoff.kernels.algebra.vectors import cross, dot, norm, rotate
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
-    edge_record,
     feature_jet,
     moved_jet,
 )
@@ -15,7 +14,13 @@ from standoff.kernels.body.trimming import on_face
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.quadratic_max import line_max, quadratic_max, widened
-from standoff.kernels.solids.round_axis import arc_data, axis_data, round_axis_greatest
+from standoff.kernels.solids.round_axis import (
+    arc_axis,
+    arc_data,
+    arc_offset,
+    axis_data,
+    round_axis_greatest,
+)
 from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_likeness import (
     OVER_SINE,
@@ -41,6 +46,7 @@ from standoff.kernels.solids.spatial_pieces import (
 )
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
+    CONE_OF,
     THIRD,
     TORUS_THROUGH,
     form,
@@ -102,18 +108,6 @@ def swing(side, o, n):
 
 
 @kernel
-def arc_offset(side, feature):
-    """Where the affine map of a conic edge stands in reals; -1: it is none."""
-    first = side.ints[L.N_FACES]
-    if not first <= feature < first + side.ints[L.N_EDGES]:
-        return -1
-    e = edge_record(side.ints, feature)
-    if side.ints[e + L.EDGE_KIND] != L.CONIC:
-        return -1
-    return side.ints[e + L.EDGE_REALS] + L.CURVE_DATA
-
-
-@kernel
 def heights_third(phi, side, leaf, box, thirds):
     """Bounds of the third derivatives of the height over a plane: those of an arc, a cylinder or a
     cone are as great as it swings along the normal."""
@@ -156,7 +150,11 @@ def likely_third(phi, side, leaf, x, reach, thirds):
         d = differences(phi, x, reach, e, w)
         if d[0] < inf:
             t = third_bounds(m, o, d)
-            thirds = lesser(thirds, (t[0], t[1], t[2], thirds[3]))
+            along = thirds[3]
+            if phi.kind in (AXIS_OF, CONE_OF):
+                # the moved one is linear in each half plane from the axis, where v runs
+                along = t[3] + m[o + S.THIRDS + 3]
+            thirds = lesser(thirds, (t[0], t[1], t[2], along))
     return thirds
 
 
@@ -186,6 +184,21 @@ def greatest(phi, sign, side, leaf, box, u, v):
 
 
 @kernel
+def arc_third(phi, side, arc, x, lengths, reach):
+    """A bound of the third derivative of a potential along an arc that turns about nearly its
+    axis; inf where it does not. lengths: of the arc's derivatives."""
+    known, point, axis = arc_axis(side, arc)
+    if not known:
+        return inf
+    e, w = to_axis(phi, point, axis, x, reach)
+    d1, d2, d3 = differences(phi, x, reach, e, w)
+    if d1 == inf:
+        return inf
+    l1, l2, l3 = lengths
+    return d3 * l1 * l1 * l1 + 3.0 * d2 * l1 * l2 + d1 * l3
+
+
+@kernel
 def greatest_along(phi, sign, side, piece, ta, tb):
     """(bound of sign phi over a part of a trimming curve, value in its middle); where the potential
     does not serve, no bound and no value."""
@@ -205,6 +218,8 @@ def greatest_along(phi, sign, side, piece, ta, tb):
         arc = arc_offset(side, feature)
         if arc >= 0 and is_plane(phi):
             third = swing(side, arc, phi.n)
+        elif arc >= 0 and phi.kind != TORUS_THROUGH:
+            third = min(third, arc_third(phi, side, arc, jet[0], (l1, l2, l3), l1 * h))
         bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
         if arc >= 0 and phi.kind == AXIS_OF:
             data = arc_data(side, arc)

@@ -5,7 +5,14 @@ from math import inf
 from standoff.kernels.algebra.vectors import dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, shared, small
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.coaxial import NO_POTENTIAL, coaxial_between, common_axis
+from standoff.kernels.solids.coaxial import (
+    NO_POTENTIAL,
+    coaxial_between,
+    common_axis,
+    in_meridian,
+    is_flat,
+    straight_through,
+)
 from standoff.kernels.solids.screw import common_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
@@ -65,8 +72,8 @@ MOST_PAIRS = 200
 FEW_BOXES, MOST_BOXES = 20, 400
 # Cuts of a pair of leaves after which it counts as hard.
 EASY_CUTS = 16
-# The same, of a potential that does for whole pieces of a thread.
-SCREW_BOXES = 150
+# The same, of a potential that does for whole pieces of a thread, and of a flat end in its bore.
+SCREW_BOXES, AXIS_BOXES = 150, 150
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
 SCREWED = 7
 ALL_WAYS = (0, SCREWED)
@@ -95,6 +102,18 @@ def by_own_surface(goal, a, b, q, limit, counts):
     return known and proven(phi, -1.0, -goal, b, q, limit, counts)
 
 
+@kernel
+def dim_of(side, leaf):
+    return side.own[leaf_ints(side, leaf) + S.DIM]
+
+
+@kernel
+def ends_sharply(part):
+    """Does a part end at a rim, as an edge or a flat face does, so that a potential about its axis
+    may have any curvature across the rim?"""
+    return dim_of(part.side, part.leaf) == 1 or is_flat(part.side, part.leaf)
+
+
 @shared
 def by_witness(goal, a, b, at, ways, limit, best, counts):
     """(way, potential): which potential through a pair of points (leaves and parameters `at`)
@@ -111,10 +130,9 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
     first, last = ways
-    if last == SCREWED:
-        closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), counts)
-        if closed:
-            return SCREWED, phi
+    closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), last, counts)
+    if closed:
+        return SCREWED, phi
     phi = plane_between(x, y, n)
     if first == 0 and by_one(phi, goal, a, b, place, counts):
         return 0, phi
@@ -129,24 +147,33 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
     turned, point, axis = common_axis(a, b, n, size)
+    known, meridian = in_meridian(x, y, n, point, axis)
+    turned = turned and known
+    # of rims, and of parts that go on about the axis from those whose points these are
+    if turned and first <= 1 and (not here or ends_sharply(a) or ends_sharply(b)):
+        phi = straight_through(a.side, wa, b.side, wb, meridian, n)
+        if by_one(phi, goal, a, b, (here, q, x, y, max(limit, AXIS_BOXES)), counts):
+            return 1, phi
     for way in range(max(first, 1), min(last, SCREWED - 1) + 1):
         if is_stopped(best, counts):
             break
+        if way % 2 == 1 and not turned:
+            continue
         margin = MARGINS[(way - 1) // 2] / span
-        if way % 2 == 0:
+        if way % 2 == 1:
+            phi = coaxial_between(meridian, frame, (sa, sb), margin, size)
+        else:
             phi = torus_between(x, y, n, frame, sa, sb, margin)
-            if by_one(phi, goal, a, b, place, counts):
-                return way, phi
-        elif turned:
-            known, phi = coaxial_between(x, y, n, frame, (sa, sb), (point, axis), margin, size)
-            if known and by_one(phi, goal, a, b, place, counts):
-                return way, phi
+        if by_one(phi, goal, a, b, place, counts):
+            return way, phi
     return -1, NO_POTENTIAL
 
 
 @kernel
-def by_screw(goal, a, b, n, place, counts):
-    """(whether a potential along a common screw proves it, potential)."""
+def by_screw(goal, a, b, n, place, last, counts):
+    """(whether a potential along a common screw proves it, potential), if it is the last way."""
+    if last != SCREWED:
+        return False, NO_POTENTIAL
     screw = common_screw(a, b)
     if not screw[0]:
         return False, NO_POTENTIAL
@@ -354,11 +381,6 @@ def put_halves(a, b, best, work, count, low):
         put_pair(work, count, a.box, first, low)
         put_pair(work, count + 1, a.box, second, low)
     return count + 2
-
-
-@kernel
-def dim_of(side, leaf):
-    return side.own[leaf_ints(side, leaf) + S.DIM]
 
 
 @kernel

@@ -39,6 +39,9 @@ to each other than this is tried with a potential about one of them."""
 NEARLY_STRAIGHT: Final = 1e-4
 """Cosine: a normal this near to an axis, or to across it, is taken to be so in a coaxial potential;
 the torus potential beside it keeps the normal as it is."""
+ALONG_OWN: Final = 1e-6
+"""One less the cosine: a normal this near to that of a cylinder or a cone that one of its points
+lies on is taken to be it."""
 ROUND_CONIC: Final = 1e-14
 """Relative, of a squared radius: a conic whose two half axes are this near to one length, and to
 being normal to each other, is an arc of a circle."""

@@ -13,7 +13,7 @@ from standoff.bodies.features import Feature
 from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.marks import draw_marks, marks_legend
-from standoff.solids.planar.loops import Loop
+from standoff.solids.planar.loops import Loop, points_along
 from standoff.wording import short_name
 
 try:
@@ -45,9 +45,6 @@ class Flat(Protocol):
     @property
     def size(self) -> float: ...
 
-
-ALONG = 65
-"""Points of a curve."""
 
 THROUGH = 0.55
 """Opacity: solids may overlap."""
@@ -131,13 +128,12 @@ def _draw_solid(
     edge = 0
     for loop in solid.loops:
         points = []
-        for curve, backward in zip(loop.curves, loop.backward, strict=True):
-            times = np.linspace(curve.first, curve.last, ALONG)
-            line = np.array([curve.point(float(t))[:2] for t in times]) @ R.T + p
+        for flat in points_along(loop):
+            line = flat[:, :2] @ R.T + p
             chosen = active == Feature("edge", edge)
             width, colour = (2.8, colours[1]) if chosen else (1.1, "black")
             axes.plot(*line.T, color=colour, linewidth=width, zorder=3.5 if chosen else 3.0)
-            points.append(line[::-1] if backward else line)
+            points.append(line)
             edge += 1
         whole = np.concatenate(points)
         corners += [whole, whole[:1]]

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from io import StringIO
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from standoff.checks.numbers import positive
+from standoff.checks.units import METRES, known_unit
 from standoff.errors import BodyError, StandoffError, not_installed
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs_curves import NurbsCurve
-from standoff.solids.planar.loops import ends_of, size_of
-from standoff.solids.planar.solid import PlanarSolid, solids_of
-from standoff.solids.planar.tolerances import JOINED
+from standoff.solids.planar.chains import chained
+from standoff.solids.planar.drawing import Drawing
+from standoff.solids.planar.dxf_markers import with_markers
+from standoff.solids.planar.loops import size_of
+from standoff.solids.planar.solid import solids_of
+from standoff.solids.planar.tolerances import JOINED, JOINED_IN_DRAWING
+from standoff.wording import counted
 
 Array = NDArray[np.float64]
 NO_GEOMETRY = frozenset(
@@ -27,14 +32,44 @@ NO_GEOMETRY = frozenset(
 )
 """Kinds of entities that say something about a drawing, and bound nothing."""
 
+SURVEY_FOOT = 1200.0 / 3937.0
+INSERT_UNITS = {
+    1: ("inch", 0.0254),
+    2: ("foot", 0.3048),
+    3: ("mile", 1609.344),
+    4: ("mm", 0.001),
+    5: ("cm", 0.01),
+    6: ("m", 1.0),
+    7: ("km", 1e3),
+    8: ("microinch", 0.0254 / 1e6),
+    9: ("mil", 0.0254 / 1e3),
+    10: ("yard", 0.9144),
+    11: ("angstrom", 1.0 / 1e10),
+    12: ("nm", 1.0 / 1e9),
+    13: ("micron", 1.0 / 1e6),
+    14: ("dm", 0.1),
+    15: ("dam", 10.0),
+    16: ("hm", 100.0),
+    17: ("Gm", 1e9),
+    18: ("astronomical unit", 149597870700.0),
+    19: ("light year", 9460730472580800.0),
+    20: ("parsec", 648e3 / math.pi * 149597870700.0),
+    21: ("US survey foot", SURVEY_FOOT),
+    22: ("US survey inch", SURVEY_FOOT / 12.0),
+    23: ("US survey yard", 3.0 * SURVEY_FOOT),
+    24: ("US survey mile", 5280.0 * SURVEY_FOOT),
+}
+"""Units of length by the numbers of $INSUNITS, 0 being none, with their metres."""
+
 
 def read_dxf(
     path: str | PathLike[str],
     *,
+    unit: str | None = None,
     layer: str | None = None,
-    scale: float = 1.0,
+    scale: float | None = None,
     join: float | None = None,
-) -> tuple[PlanarSolid, ...]:
+) -> Drawing:
     """The solids that the closed curves of a DXF drawing bound.
 
     Lines, arcs, circles, ellipses, splines and polylines (with bulges) of the model space, those
@@ -44,18 +79,22 @@ def read_dxf(
     Parameters
     ----------
     path : path
+    unit : "mm", "cm", "m" or "inch", optional
+        Of the lengths that are returned: the file's, by its $INSUNITS, are converted, which the
+        report tells. The file's own by default; those of a file that tells none stay as they are.
     layer : str, optional
         Take the entities of this layer alone.
     scale : float, optional
-        Length of one unit of the drawing; for instance 1e-3 for a drawing in mm.
+        Length of one unit of the drawing in `unit`, in place of what the file tells: for a file
+        that tells none, or a wrong one.
     join : float, optional
-        By how much ends that meet may miss each other, length; 1e-9 of the drawing's size by
-        default. What they miss is the solids' `slack`.
+        By how much ends that meet may miss each other, length; 1e-5 of the drawing's size by
+        default. What they miss is told, and is the solids' `slack`.
 
     Returns
     -------
-    tuple of PlanarSolid
-        In the order of the drawing; their names are the file's, with a number from the second on.
+    Drawing
+        A sequence of PlanarSolid, in the order of the drawing, with the unit and a report.
 
     Raises
     ------
@@ -64,36 +103,67 @@ def read_dxf(
     FileNotFoundError
         There is no such file.
     StandoffError
-        A file that is no DXF, or cut off.
+        A file that is no DXF, or cut off; an unknown unit.
     BodyError
         Nothing that bounds an area, curves that are open, doubled, cross each other, or out of
         z = 0. The text has the place.
     """
-    unit = positive(scale, "scale")
+    wanted = None if unit is None else known_unit(unit)
+    factor = None if scale is None else positive(scale, "scale")
     limit = None if join is None else positive(join, "join")
     file = Path(path)
+    document, added = _document(file)
+    if factor is None:
+        file_unit, factor = _file_unit(document, wanted)
+        own = wanted if file_unit and wanted else file_unit
+    else:
+        file_unit, own = "", wanted or ""
     curves = [
-        curve.transformed(unit * np.eye(3), np.zeros(3)) if unit != 1.0 else curve
-        for entity in _entities(_document(file), layer)
+        curve.transformed(factor * np.eye(3), np.zeros(3)) if factor != 1.0 else curve
+        for entity in _entities(document, layer)
         for curve in _curves(entity)
     ]
     if not curves:
         where = f" on the layer {layer!r}" if layer is not None else ""
         raise BodyError(f"{file.name} has no lines or curves{where}.", "path", path)
-    loops = chained(curves, JOINED * size_of(curves) if limit is None else limit)
-    return solids_of(loops, name=file.stem, join=limit)
+    size = size_of(curves)
+    limit = JOINED_IN_DRAWING * size if limit is None else limit
+    chains = chained(curves, (min(JOINED * size, limit), limit))
+    notes = [f"added to the file: {added}"] if added else []
+    if chains.joined:
+        notes.append(
+            f"joined: {counted(chains.joined, 'pair')} of ends, which miss each other by up to "
+            f"{chains.gap:.3g}{own and ' ' + own}, at {chains.place}; up to {limit:.3g} is joined"
+        )
+    solids = solids_of(chains.loops, name=file.stem, join=limit)
+    return Drawing(solids, own, file_unit, file.name, tuple(notes))
 
 
-def _document(file: Path) -> Any:
+def _file_unit(document: Any, wanted: str | None) -> tuple[str, float]:
+    """The unit that a drawing tells, "" for none, and its length in the one that is wanted."""
+    name, metres = INSERT_UNITS.get(int(document.header.get("$INSUNITS", 0)), ("", 1.0))
+    return name, metres / METRES[wanted] if name and wanted else 1.0
+
+
+def _document(file: Path) -> tuple[Any, str]:
+    """The drawing, and what was added to its text."""
     try:
-        from ezdxf.filemanagement import readfile
-        from ezdxf.lldxf.const import DXFError
+        from ezdxf.filemanagement import dxf_file_info, read, readfile
+        from ezdxf.lldxf.const import DXFError, DXFStructureError
     except ImportError as error:
         raise ImportError(not_installed("ezdxf", "dxf")) from error
     if not file.exists():
         raise FileNotFoundError(f"There is no file {file}.")
     try:
-        return readfile(file)
+        try:
+            return readfile(file), ""
+        except DXFStructureError as error:
+            if "subclass" not in str(error):
+                raise
+            encoding = dxf_file_info(str(file)).encoding
+            text = file.read_text(encoding=encoding, errors="surrogateescape")
+            mended, added = with_markers(text)
+            return read(StringIO(mended)), added
     except (OSError, UnicodeDecodeError, DXFError, ValueError, IndexError) as error:
         raise StandoffError(
             f"{file.name} is no DXF drawing, or it is cut off: {error}", "path", file
@@ -202,65 +272,3 @@ def _polyline(entity: Any) -> list[Curve]:
 def _has_length(part: Any) -> bool:
     """Not a step of a polyline between equal points, which programs write to close it."""
     return bool(part.dxftype() != "LINE" or part.dxf.start != part.dxf.end)
-
-
-def chained(curves: list[Curve], tolerance: float) -> list[list[Curve]]:
-    """Loops of curves that meet end to end, in any order.
-
-    Parameters
-    ----------
-    curves : list of Curve
-    tolerance : float
-        By how much ends may miss each other, length.
-
-    Returns
-    -------
-    list of lists of Curve
-
-    Raises
-    ------
-    BodyError
-        An end at which no other curve ends, or more than one, with the place.
-    """
-    loops: list[list[Curve]] = []
-    open_curves: list[Curve] = []
-    for curve in curves:
-        p, q = ends_of(curve)
-        (loops.append([curve]) if np.linalg.norm(p - q) <= tolerance else open_curves.append(curve))
-    partners = _partners(open_curves, tolerance)
-    left = set(range(len(open_curves)))
-    while left:
-        at = first = min(left)
-        end, loop = 1, []
-        while at in left:
-            left.discard(at)
-            loop.append(open_curves[at])
-            at, other = divmod(partners[2 * at + end], 2)
-            end = 1 - other
-        assert at == first
-        loops.append(loop)
-    return loops
-
-
-def _partners(curves: list[Curve], tolerance: float) -> dict[int, int]:
-    """For each end 2 k (first) or 2 k + 1 (last) of curve k the end that it meets."""
-    if not curves:
-        return {}
-    ends = np.array([end for curve in curves for end in ends_of(curve)])
-    tree = cKDTree(ends)
-    partners: dict[int, int] = {}
-    for k, near in enumerate(tree.query_ball_point(ends, tolerance)):
-        others = [j for j in near if j != k]
-        if not others:
-            gap = float(tree.query(ends[k], 2)[0][1])
-            raise BodyError(
-                f"A curve ends at {ends[k]}, and no other one begins there (the nearest end is "
-                f"{gap:.6g} away): close the outline, or give `join`."
-            )
-        if len(others) > 1:
-            raise BodyError(
-                f"{len(near)} curves end at {ends[k]}, where two are to meet: remove doubled "
-                "lines and branches there."
-            )
-        partners[k] = others[0]
-    return partners

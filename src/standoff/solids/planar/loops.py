@@ -17,6 +17,7 @@ from standoff.solids.planar.leaves import FEWEST_LEAVES, Leaves, leaves_of
 from standoff.solids.planar.tolerances import IN_PLANE, JOINED
 
 Array = NDArray[np.float64]
+DRAWN = 65  # points of a curve in pictures
 
 
 class Loop(NamedTuple):
@@ -43,6 +44,14 @@ class Loop(NamedTuple):
 def ends_of(curve: Curve) -> tuple[Array, Array]:
     """Both ends (2,) of a curve, in the direction of its parameter."""
     return curve.point(curve.first)[:2], curve.point(curve.last)[:2]
+
+
+def points_along(loop: Loop) -> list[Array]:
+    """Points (n, 3) along each curve of a loop, in its direction: for pictures."""
+    return [
+        np.array([c.point(t) for t in np.linspace(c.first, c.last, DRAWN)[:: -1 if back else 1]])
+        for c, back in zip(loop.curves, loop.backward, strict=True)
+    ]
 
 
 def size_of(curves: Sequence[Curve], what: str = "the loops") -> float:

@@ -10,6 +10,11 @@ JOINED: Final = 1e-9
 """Ends of curves that are to meet may miss each other by this fraction of the solid's size, the
 same as for a planar `Body`; what they miss is the solid's slack."""
 
+JOINED_IN_DRAWING: Final = 1e-5
+"""Ends of a DXF drawing's curves that meet no other end, and so leave it open, are joined over this
+fraction of the drawing's size. Programs write at least six digits, so each coordinate is off by up
+to 5e-6 of it, and two ends by twice that; what they miss is told, and is the solid's slack."""
+
 APART_FROM_ITSELF: Final = 4e-9
 """Parts of a boundary nearer to each other than this fraction of its size, and not joined there,
 meet: a few times what ends may miss each other by."""

@@ -240,12 +240,14 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])
     way = parted(normals, found.tolerance, lambda by: _is_apart(pair.moved(by)))
     if way == np.inf:
+        # what proves that they touch takes less than looking for a ball beside each common point
+        way = depth_bound(pair, found.tolerance)
+    if way == np.inf:
         spots = [0.5 * (each.point_a + each.point_b) for each in _places(pair, common, senses, 0.0)]
         spare = sought.deadline - common.told.evaluations
         overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance, spare)
         if overlap:
             return answer_of(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
-        way = depth_bound(pair, found.tolerance)
     places = near
     if sought.above > 0.0:
         others = _places(pair, pair.least(senses, sought), senses, sought.above)

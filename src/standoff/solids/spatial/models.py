@@ -11,7 +11,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.half_space import HalfSpace
-from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.solid_model import SolidModel, known_model
 
 
 def as_model(given: Any) -> SolidModel:
@@ -26,6 +26,9 @@ def as_model(given: Any) -> SolidModel:
 @lru_cache(maxsize=64)
 def _made_once(boundary: Boundary) -> SolidModel:
     """A body is asked again and again, and its leaves take a second."""
+    found = known_model(boundary)
+    if found is not None:
+        return found
     if not isinstance(boundary, Body) or (boundary.face_parts and boundary.bounded):
         return SolidModel(boundary)
     if not boundary.bounded:

@@ -43,9 +43,7 @@ def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Ove
             best, where = depth, point
         if ascent.left <= 0:
             break
-    if best > least:
-        return Overlap(where, best, 2.0 * best)
-    return ball_beside(pair, starts[:1], least, ascent.left)
+    return Overlap(where, best, 2.0 * best) if best > least else None
 
 
 def ball_beside(pair: PlacedPair, starts: Array, least: float, left: int) -> Overlap | None:

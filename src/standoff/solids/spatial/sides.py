@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from standoff.kernels.entries.queries import chart_normal, coedge_parameters, ed
 from standoff.kernels.entries.solid_points import outward_at
 from standoff.kernels.solids.spatial_tolerances import NO_SIDE
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import PIECE_END_SPARE
+from standoff.solids.spatial.tolerances import CUSP, PIECE_END_SPARE
 
 
 def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array | None:
@@ -37,27 +38,64 @@ def number_of(solid: SolidModel, leaf: int) -> int:
     return int(solid.leaves[leaf].feature - solid.boundary.n_faces - solid.boundary.n_edges)
 
 
-def _at_vertex(solid: SolidModel, vertex: int, charts: Iterable[int]) -> Array | None:
-    """The sum of the faces' normals at a vertex, each weighted by the face's angle there; all of
-    the faces that are there are among `charts`."""
-    total = np.zeros(3)
+class Corner(NamedTuple):
+    """Of a face at a vertex: unit directions along the edges that leave it and that arrive, the
+    outward unit normal, and the face's angle from the one to the other, 0 to 2 pi."""
+
+    out: Array
+    into: Array
+    normal: Array
+    angle: float
+
+
+def corners_at(
+    solid: SolidModel, vertex: int, charts: Iterable[int]
+) -> tuple[list[Corner], dict[int, list[Array]]]:
+    """The faces' corners at a vertex, and the ways from it along the edges of charts of which no
+    corner is known: with sides that are collapsed to it, or edges without a direction. All charts
+    that are there are among `charts`.
+
+    The charts of an atlas overlap: of each face the one that sees most of the edges' ends counts.
+    Corners of one face do not overlap: what leaves belongs to the next that arrives.
+    """
+    boundary = solid.boundary
+    seen: dict[int, tuple[int, list[Array], list[Array], Array | None]] = {}
     for chart in charts:
-        out, into, normal = corner_of(solid, chart, vertex)
-        if not out and not into:
+        out, into, normal = _ends_at(solid, chart, vertex)
+        face = int(chart_row(boundary, chart)[L.CHART_FACE])
+        if (out or into) and (
+            face not in seen or len(out) + len(into) > len(seen[face][1]) + len(seen[face][2])
+        ):
+            seen[face] = (chart, out, into, normal)
+    corners: list[Corner] = []
+    unknown: dict[int, list[Array]] = {}
+    for chart, out, into, normal in seen.values():
+        ways = [way for way in (*out, *into) if way.any()]
+        size = 0.0 if normal is None else float(np.linalg.norm(normal))
+        if size == 0.0 or normal is None or 2 * len(out) != len(ways) or len(out) != len(into):
+            unknown[chart] = ways
             continue
-        if len(out) != 1 or len(into) != 1 or normal is None:
-            return None
-        size = float(np.linalg.norm(normal))
-        if size == 0.0:
-            return None
         n = normal / size
-        a, b = out[0], into[0]
-        angle = np.arctan2(float(n @ np.cross(a, b)), float(a @ b)) % (2.0 * np.pi)
-        total += angle * n
+        for a in out:
+            across = np.cross(n, a)
+            angles = [float(np.arctan2(across @ b, a @ b) % (2.0 * np.pi)) for b in into]
+            k = int(np.argmin(angles))
+            corners.append(Corner(a, into[k], n, angles[k]))
+    return corners, unknown
+
+
+def _at_vertex(solid: SolidModel, vertex: int, charts: Iterable[int]) -> Array | None:
+    """The sum of the faces' normals at a vertex, each weighted by the face's angle there; None
+    where a corner is not known, or a cusp, whose angle may be 0 or all around."""
+    corners, unknown = corners_at(solid, vertex, charts)
+    angles = np.array([corner.angle for corner in corners])
+    if unknown or np.any(np.minimum(angles, 2.0 * np.pi - angles) < CUSP):
+        return None
+    total = np.sum([corner.angle * corner.normal for corner in corners], axis=0)
     return total if float(np.linalg.norm(total)) > NO_SIDE else None
 
 
-def corner_of(
+def _ends_at(
     solid: SolidModel, chart: int, vertex: int
 ) -> tuple[list[Array], list[Array], Array | None]:
     """Directions from a vertex along the edges of a chart's loop that leave it and that arrive,

@@ -22,13 +22,19 @@ from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.self_intersections import SelfIntersections, self_intersections
-from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.solid_model import SolidModel, known_model
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Places that a message names.
 MOST_NAMED = 3
+
+
+def solid_of(boundary: Boundary) -> Solid:
+    """The solid of a boundary that somebody has already, or a new one; raises as `Solid` does."""
+    found = known_model(boundary)
+    return found if isinstance(found, Solid) else Solid(boundary)
 
 
 class Solid(SolidModel, Plotted):
@@ -76,6 +82,11 @@ class Solid(SolidModel, Plotted):
                 "boundary",
                 self.self_intersections,
             )
+        self._register()
+
+    def __setstate__(self, stored: Any) -> None:
+        super().__setstate__(stored)
+        self._register()
 
     @staticmethod
     def from_brep(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,15 @@ from standoff.wording import printable
 
 if TYPE_CHECKING:
     from standoff.bodies.rounding.parts import Origin
+
+
+_models: WeakValueDictionary[int, SolidModel] = WeakValueDictionary()
+"""The solids that there are, by the identity of the boundaries that they were made of and keep."""
+
+
+def known_model(boundary: Boundary) -> SolidModel | None:
+    """The `Solid` of a boundary that somebody has."""
+    return _models.get(id(boundary))
 
 
 class SolidModel(KeepsReadOnly):
@@ -74,6 +84,10 @@ class SolidModel(KeepsReadOnly):
         self.references: Array | None = None
         self.vertex_normals: Array | None = None
         self.vertex_fans: Any = None
+
+    def _register(self) -> None:
+        """Let others find it by its boundary, now that it is checked."""
+        _models[id(self._given)] = self
 
     def _compare(self, name: str, given: float | None, relative: float) -> None:
         if given is None:

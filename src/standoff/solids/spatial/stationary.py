@@ -13,7 +13,7 @@ from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY
 from standoff.kernels.solids.stationary import FAN_INTS
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.pair import Place, PlacedPair
-from standoff.solids.spatial.sides import charts_at, corner_of
+from standoff.solids.spatial.sides import charts_at, corners_at
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
 
@@ -78,18 +78,13 @@ def _fan_of(
     one that arrives, counterclockwise."""
     ways: list[Array] = []
     corners: list[list[float]] = []
-    for chart in charts:
-        out, into, normal = corner_of(solid, chart, vertex)
-        if normal is None:
-            if into:
-                ways += list(_ways_from_side(solid, chart, vertex))
-            continue
-        outward = normal / np.linalg.norm(normal)
-        for a, b in zip(out, into, strict=False):
-            across = np.cross(outward, a)
-            ways += [a, b]
-            angle = np.arctan2(across @ b, a @ b) % (2.0 * np.pi)
-            corners.append([*a, *across, float(angle)])
+    found, unknown = corners_at(solid, vertex, charts)
+    for chart, along in unknown.items():
+        ways += [*along, *_ways_from_side(solid, chart, vertex)]
+    for corner in found:
+        ways += [corner.out, corner.into]
+        across = np.cross(corner.normal, corner.out)
+        corners.append([*corner.out, *across, corner.angle])
     return ways, corners
 
 

@@ -51,6 +51,9 @@ LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 sought."""
 SAME_SPOT: Final = 1e-5
 """Of the size: nearest points of one solid nearer to each other than this are one."""
+CUSP: Final = 1e-6
+"""Radians: of a face's corner with a smaller angle between its edges it is not known whether the
+face lies between them or all around."""
 PIECE_END_SPARE: Final = 1e-12
 """Radians or parameters: how far an edge's end may be from that of its trimming curve."""
 MASS_TOLERANCE: Final = 1e-9

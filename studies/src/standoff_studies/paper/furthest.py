@@ -124,7 +124,7 @@ class Kind(NamedTuple):
     error: float
 
 
-def _place(body: so.Body, pose: Pose, point: Array, out: Array) -> Place:
+def place_at(body: so.Body, pose: Pose, point: Array, out: Array) -> Place:
     """The feature and parameters of a point of a body's surface, its outward normal given."""
     found = so.distance(body, so.shapes.point(), pose, Pose(np.eye(3), point + ASIDE * out))
     feature, parameters = found.place_a
@@ -165,7 +165,7 @@ def _kind(bodies: tuple[so.Body, so.Body], pose: Pose, model: Supports, n: Array
     x = model.q_a @ n / math.sqrt(n @ model.q_a @ n)
     y = model.middle - model.q_b @ n / math.sqrt(n @ model.q_b @ n)
     still = Pose.identity()
-    places = _place(bodies[0], still, x, n), _place(bodies[1], pose, y, -n)
+    places = place_at(bodies[0], still, x, n), place_at(bodies[1], pose, y, -n)
     system = pair_system(*bodies, still, pose, *places)
     of_h = np.linalg.eigvalsh(system.H)
     signs = int((of_h > 0.0).sum()), int((of_h < 0.0).sum())
@@ -281,7 +281,7 @@ def followed(first: float, last: float) -> Followed:
     tracker, begin, still = Tracker(a, b, STEP, law=law), path.pose(0.0), Pose.identity()
     way = np.append(least_way(begin)[1], 0.0)
     x, y = points_of(begin, way[:2])
-    places = _place(a, still, x, way), _place(b, begin, y, -way)
+    places = place_at(a, still, x, way), place_at(b, begin, y, -way)
     state = begun(tracker, (REST, path), *places)
     step = motion_along(REST, path, time[:3])
     rows = step[0] + np.arange(len(time) - 1.0)[:, None] * (step[1] - step[0])  # a straight slide

@@ -61,11 +61,10 @@ def is_pinned(bodies: tuple[Body, Body], poses: tuple[Pose, Pose], answer: Proxi
 
     For bodies of patches with parameters in [0, 1].
     """
-    places = (
-        (answer.feature_a, answer.parameters_a),
-        (answer.feature_b, answer.parameters_b),
-    )
-    parameters = np.array([*answer.parameters_a, *answer.parameters_b])
+    # roundoff may have taken a parameter past an end
+    on_a, on_b = (np.clip(at, 0.0, 1.0) for at in (answer.parameters_a, answer.parameters_b))
+    places = (answer.feature_a, on_a), (answer.feature_b, on_b)
+    parameters = np.array([*on_a, *on_b])
     at_side = bool((np.minimum(parameters, 1.0 - parameters) < AT_SIDE).any())
     system = pair_system(*bodies, *poses, *places)
     indefinite = bool(np.linalg.eigvalsh(system.H).min(initial=np.inf) < 0.0)

@@ -1,8 +1,9 @@
 """Every sentence of the paper that promises or claims something, and what became of it.
 
 The rows are in ``promises.toml``. Each quotes what it rests on: a part of what a figure's statement
-measured, with that statement's verdict, or words of a page whose code is run. So a row that is no
-longer true is told: `faults` compares, and the pages and the tests ask it of every figure.
+measured, with that statement's verdict, or words of a page. So a row that is no longer true is
+told: `faults` compares, and the pages and the tests ask it of every figure. Each quotation names
+the change that turns it; ``broken_on_purpose.changes`` makes these changes.
 """
 
 from __future__ import annotations
@@ -55,12 +56,18 @@ class Shown(NamedTuple):
     words : str
         Words of what the paper states there, if the number alone does not tell which statement is
         meant; quoted if there is no number, as where it is a time of the machine.
+    turned_by : str
+        The change that turns it: its name in ``broken_on_purpose.changes``.
+    fixed : str
+        Why no change turns it; "" if one does.
     """
 
     verdict: Verdict | None
     key: str
     number: str
     words: str = ""
+    turned_by: str = ""
+    fixed: str = ""
 
     @property
     def text(self) -> str:
@@ -119,17 +126,30 @@ class Promise(NamedTuple):
         return "" if self.why else "it does not say why"
 
 
+_FILE = tomllib.loads((files(__package__) / "promises.toml").read_text("utf-8"))
+_TURNED_BY: Mapping[str, Mapping[str, list[str]]] = _FILE.pop("turned by")
+_FIXED: Mapping[str, str] = _FILE.pop("turned by nothing")
+_SIGNS = {"": None, **{verdict.sign: verdict for verdict in Verdict}}
+
+
 def _read(row: dict[str, Any]) -> Promise:
-    signs = {"": None, **{verdict.sign: verdict for verdict in Verdict}}
-    shown = tuple(Shown(signs[sign], *texts) for sign, *texts in row["shown"])
+    shown = tuple(_quoted(*texts) for texts in row["shown"])
     return Promise(row["says"], row.get("where", ""), Kept(row["here"]), row.get("why", ""), shown)
 
 
+def _quoted(sign: str, key: str, number: str, words: str = "") -> Shown:
+    """A quotation, with the first change of its figure that names a part of it, or all."""
+    fixed = _FIXED.get(number, "")
+    names = (
+        name
+        for name, parts in _TURNED_BY.get(key, {}).items()
+        if not fixed and (not parts or any(part in number or part in words for part in parts))
+    )
+    return Shown(_SIGNS[sign], key, number, words, next(names, ""), fixed)
+
+
 PROMISES: Mapping[str, tuple[Promise, ...]] = {
-    section: tuple(map(_read, rows))
-    for section, rows in tomllib.loads(
-        (files(__package__) / "promises.toml").read_text("utf-8")
-    ).items()
+    section: tuple(map(_read, rows)) for section, rows in _FILE.items()
 }
 """By the section of the paper."""
 
@@ -161,11 +181,13 @@ def markdown() -> str:
     """Return what the page has of the rows: their number by verdict, and a table a section."""
     counts = counted()
     numbers = ", ".join(f"{count} {kept.value}" for kept, count in counts.items())
+    cells = _said, _kept, _shown, _turned
     tables = [
         "\n".join(
             [
-                f"## {section}\n\n| the paper says | here | shown by |\n|---|---|---|",
-                *(f"| {_said(row)} | {_kept(row)} | {_shown(row)} |" for row in rows),
+                f"## {section}\n\n| the paper says | here | shown by | turned by |",
+                "|---|---|---|---|",
+                *(f"| {' | '.join(cell(row) for cell in cells)} |" for row in rows),
             ]
         )
         for section, rows in PROMISES.items()
@@ -196,3 +218,8 @@ def _shown(row: Promise) -> str:
         link = f"[{name}]({key})" if name != key else f"[`standoff paper {key}`]({page_of(key)})"
         parts.append(f"{link}: {quoted}")
     return "<br>".join(parts)
+
+
+def _turned(row: Promise) -> str:
+    """The changes that turn its quotations."""
+    return "<br>".join(dict.fromkeys(one.turned_by for one in row.shown if one.turned_by))

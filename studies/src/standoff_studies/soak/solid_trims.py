@@ -11,6 +11,7 @@ boundary. The exit code is 1 where the library is wrong; refused parts are count
 
 from __future__ import annotations
 
+import os
 import re
 import tempfile
 from collections import Counter
@@ -23,6 +24,7 @@ from typing import Any
 import numpy as np
 
 import standoff as so
+from standoff.cad import store
 from standoff.errors import StandoffError
 from standoff.kernels.body import layout as L
 from standoff_studies.soak import blocks
@@ -30,7 +32,7 @@ from standoff_studies.soak.solid_outlines import Array
 
 AGREED = 1e-6
 """Length, of parts of about 1: OpenCASCADE's own tolerance is 1e-7, and it may add up."""
-POINTS, DISTANCES = 100, 10
+POINTS, BY_VERTICES, DISTANCES = 100, 40, 10
 """Of each part."""
 BOXES = 12
 """Small ones, from which distances are asked."""
@@ -264,6 +266,17 @@ def judge_distances(
             yield f"box {sides.tolist()} at {place.tolist()}: {own!r}, by OpenCASCADE {true!r}"
 
 
+def by_vertices(solid: Any, rng: np.random.Generator) -> Array:
+    """Points (n, 3) about vertices, whose sides the faces' corners there decide."""
+    vertices = np.array(solid.boundary.vertex_points).reshape(-1, 3)
+    if not len(vertices):
+        return vertices
+    ways = rng.normal(size=(BY_VERTICES, 3))
+    ways *= solid.size * 10.0 ** rng.uniform(-4.0, -0.5, (BY_VERTICES, 1))
+    near: Array = vertices[rng.integers(len(vertices), size=BY_VERTICES)] + ways
+    return near
+
+
 def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
     """One part with its points and distances."""
     rng = np.random.default_rng([seed, number, 3])
@@ -279,6 +292,7 @@ def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
         points = middle + 1.3 * half * rng.uniform(-1.0, 1.0, (POINTS, 3))
         lines = [*judge_points(shape, solid, points, seen)]
         lines += judge_distances(shape, solid, rng, seen)
+        lines += judge_points(shape, solid, by_vertices(solid, rng), seen)
     except StandoffError as error:
         reason = re.sub(r"^.*refused\. ", "", str(error))
         seen.refused[re.sub(r"-?\d[\d.e+-]*", "#", reason)[:120]] += 1
@@ -290,6 +304,7 @@ def main() -> int:
     """Read the options, run, and tell; 1 if the library was wrong."""
     parser = blocks.options(__doc__, "parts", 1_000, 1)
     given = parser.parse_args()
+    os.environ[store.SIZE] = "0"  # parts are made, not found
     found = blocks.run(given, 1, partial(judge_part, seed=given.seed))
     return 0 if found is None or found.sound else 1
 

@@ -173,14 +173,19 @@ def _draw_decay(axes: Axes) -> None:
 
 
 def _draw_lag(axes: Axes) -> None:
+    parts = {kind: [lag.part for lag in lags() if lag.kind == kind] for kind in PAIRS}
+    draw_parts(axes, parts, "measured lag / lag promised by so.min_gain")
+
+
+def draw_parts(axes: Axes, parts: dict[str, list[float]], label: str) -> None:
+    """Draw a row of dots for each kind, in parts of what is promised, the greatest as a line."""
     random = np.random.default_rng(0)
-    for row, kind in enumerate(PAIRS):
-        parts = np.array([lag.part for lag in lags() if lag.kind == kind])
-        spread = row + random.uniform(-0.28, 0.28, len(parts))
-        axes.plot(parts, spread, ".", color=style.BLUE, markersize=3.5, alpha=0.6)
-        axes.plot([parts.max()] * 2, [row - 0.36, row + 0.36], color=style.BLACK, linewidth=2.0)
+    for row, own in enumerate(parts.values()):
+        spread = row + random.uniform(-0.28, 0.28, len(own))
+        axes.plot(own, spread, ".", color=style.BLUE, markersize=3.5, alpha=0.6)
+        axes.plot([max(own)] * 2, [row - 0.36, row + 0.36], color=style.BLACK, linewidth=2.0)
     axes.axvline(1.0, color=style.RED, linestyle="--")
-    axes.set_yticks(range(len(PAIRS)), list(PAIRS))
-    axes.set(xlabel="measured lag / lag promised by so.min_gain", xlim=(0.0, 1.05))
+    axes.set_yticks(range(len(parts)), list(parts))
+    axes.set(xlabel=label, xlim=(0.0, 1.05))
     axes.grid(axis="y", visible=False)
     axes.invert_yaxis()

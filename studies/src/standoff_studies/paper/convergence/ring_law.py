@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff.kernels.algebra.vectors import cross, dot, scale, sub
+from standoff.kernels.algebra.rigid import read_rotation, read_vector
+from standoff.kernels.algebra.vectors import cross, dot, norm, scale, sub
+from standoff.kernels.body.features import moved_jet
 from standoff.kernels.body.jets import torus_jet
 from standoff.kernels.pair.system import (
     covariant_hessian,
@@ -16,6 +18,7 @@ from standoff.kernels.pair.system import (
     hessian,
     projection_errors,
 )
+from standoff.kernels.values import Pose
 from standoff_studies.own_kernels import own_kernel
 
 PRINTED, COVARIANT, PARTS, GRADIENT = 0, 1, 2, 3
@@ -30,30 +33,11 @@ ENOUGH = 1e-8
 
 
 @own_kernel
-def turned(pose, x):
-    """A vector turned by a pose of 12 numbers."""
-    return (
-        pose[0] * x[0] + pose[1] * x[1] + pose[2] * x[2],
-        pose[3] * x[0] + pose[4] * x[1] + pose[5] * x[2],
-        pose[6] * x[0] + pose[7] * x[1] + pose[8] * x[2],
-    )
-
-
-@own_kernel
 def ring_jets(radii, pose, q):
     """The jets of ring A at home and of ring B at a pose; both radii 0 are a point."""
     a = torus_jet(radii, 0, q[0], q[1])
     b = torus_jet(radii, 2, q[2], q[3])
-    x = turned(pose, b[0])
-    at = (x[0] + pose[9], x[1] + pose[10], x[2] + pose[11])
-    return a, (
-        at,
-        turned(pose, b[1]),
-        turned(pose, b[2]),
-        turned(pose, b[3]),
-        turned(pose, b[4]),
-        turned(pose, b[5]),
-    )
+    return a, moved_jet(Pose(read_rotation(pose, 0), read_vector(pose, 9)), b)
 
 
 @own_kernel
@@ -106,10 +90,13 @@ def ring_system(radii, pose, q, law, g, form, lengths):
         for j in range(i, 4):
             form[i, j] = form[j, i] = entries[k]
             k += 1
-    lengths[0], lengths[1] = dot(jet_a[1], jet_a[1]) ** 0.5, dot(jet_a[2], jet_a[2]) ** 0.5
-    lengths[2], lengths[3] = dot(jet_b[1], jet_b[1]) ** 0.5, dot(jet_b[2], jet_b[2]) ** 0.5
-    dR = sub(jet_a[0], jet_b[0])
-    return dot(dR, dR) ** 0.5
+    lengths[0], lengths[1], lengths[2], lengths[3] = (
+        norm(jet_a[1]),
+        norm(jet_a[2]),
+        norm(jet_b[1]),
+        norm(jet_b[2]),
+    )
+    return norm(sub(jet_a[0], jet_b[0]))
 
 
 @own_kernel

@@ -27,13 +27,23 @@ from standoff_studies.paper.convergence.starts import ARRIVED
 THIN, FAT, POINT = (1.0, 0.2), (1.0, 0.45), (0.0, 0.0)
 """Radii of a ring's circle and of its tube [length]."""
 
+HOLLOW = "hollow ring and point"
+
 KINDS = {
     "ring and point": (FAT, POINT),
     "two rings": (THIN, THIN),
     "linked rings": (THIN, THIN),
     "fat and thin": (FAT, THIN),
+    HOLLOW: (FAT, POINT),
 }
-"""The radii of both bodies by the kind of pair."""
+"""The radii of both bodies by the kind of pair; of a hollow ring those of its hollow, in which the
+point is: its wall bends inwards both ways on half of it, as the inside of a bowl does."""
+
+SHELL = 0.15
+"""Thickness of a hollow ring [length]."""
+
+WITHIN = {"linked rings": 0.2, HOLLOW: 0.15}
+"""How far the second body's centre is from the first one's circle [length]."""
 
 POSES, STARTS = 2, 150
 """Of each kind, and at each of them."""
@@ -47,7 +57,7 @@ LEAST_GAP = 0.1
 """Least distance of a drawn pair [length]."""
 
 AWAY = {"ring and point": 0.6, "two rings": 1.8, "fat and thin": 1.9}
-"""Distance of the second body's centre [length]; a linked ring's is on the first one's circle."""
+"""Distance of the second body's centre of the others [length]."""
 
 FAR = 10.0
 """Above every distance [length]."""
@@ -117,10 +127,10 @@ class Arrived(NamedTuple):
 
 
 @cache
-def solid(radii: tuple[float, float]) -> Solid:
-    """A ring as a solid of two halves."""
-    half = 0.5 * np.pi
-    return Solid.from_patches([Torus(*radii, v0=x, v1=x + np.pi) for x in (-half, half)])
+def solid(radius: float, *tubes: float) -> Solid:
+    """A ring as a solid, each of its walls in two halves; with two tubes it is hollow."""
+    halves = [(tube, x) for tube in tubes for x in (-0.5 * np.pi, 0.5 * np.pi)]
+    return Solid.from_patches([Torus(radius, tube, v0=x, v1=x + np.pi) for tube, x in halves])
 
 
 @cache
@@ -131,22 +141,24 @@ def ring_pairs(kind: str) -> tuple[RingPair, ...]:
     a, b = KINDS[kind]
     while len(found) < POSES:
         turn, way = rng.normal(size=(2, 3))
-        if kind == "linked rings":
-            pose = Pose.exp(np.array([0.5 * np.pi, 0.0, 0.0]) + 0.3 * turn, 0.2 * way)
-            pose = Pose(pose.rotation, pose.translation + np.array([1.0, 0.0, 0.0]))
+        if kind in WITHIN:
+            pose = Pose.exp(np.array([0.5 * np.pi, 0.0, 0.0]) + 0.3 * turn, WITHIN[kind] * way)
+            pose = Pose(pose.rotation, pose.translation + np.array([a[0], 0.0, 0.0]))
         else:
             pose = Pose.exp(turn, AWAY[kind] * way / np.linalg.norm(way))
-        one = RingPair(kind, np.array([*a, *b]), pose, _judged(a, b, pose))
+        one = RingPair(kind, np.array([*a, *b]), pose, _judged(kind, pose))
         apart = bool(one.minima) and one.minima[0] > LEAST_GAP
         if apart and (b == POINT or one.second < FAR):
             found.append(one)
     return tuple(found)
 
 
-def _judged(a: tuple[float, float], b: tuple[float, float], pose: Pose) -> tuple[float, ...]:
+def _judged(kind: str, pose: Pose) -> tuple[float, ...]:
     """The proven distance and the other minima, or nothing where they are not apart."""
-    other = shapes.point() if b == POINT else solid(b)
-    answer = distance(solid(a), other, Pose.identity(), pose, minima=FAR)
+    a, b = KINDS[kind]
+    ring = solid(*a, a[1] + SHELL) if kind == HOLLOW else solid(*a)
+    other = shapes.point() if b == POINT else solid(*b)
+    answer = distance(ring, other, Pose.identity(), pose, minima=FAR)
     if not answer.certified or answer.distance <= 0.0:
         return ()
     return (answer.distance, *sorted(each.distance for each in answer.minima))

@@ -1,15 +1,18 @@
 """Lin and Manocha's way: Eqs. (1)-(4) as polynomials, one unknown eliminated by Sylvester's matrix.
 
 Its roots are the eigenvalues of a matrix polynomial. Two unknowns are solved here: a point and a
-face, or two curves. Four, of two faces, are not: `roots_of_two_faces` says why.
+face, two curves, or the two multipliers of whole ellipsoids. Four, of two faces, are not:
+`roots_of_two_faces` says why.
 """
 
 from __future__ import annotations
 
 from itertools import permutations, product
 from math import comb
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import eig
 from scipy.signal import convolve2d
 
@@ -95,9 +98,7 @@ def _between(a: Array, b: Array) -> list[Array]:
 
 def unit_roots(p: Array) -> list[float]:
     """Real roots of a polynomial, lowest coefficient first, in [0, 1]."""
-    found = np.roots(_trimmed(p[:, None])[::-1, 0])
-    near = found[np.abs(found.imag) < REAL].real
-    return _in_unit(near)
+    return _in_unit(_real(np.roots(_trimmed(p[:, None])[::-1, 0])))
 
 
 def _in_unit(roots: Array) -> list[float]:
@@ -118,7 +119,16 @@ def common_roots(p: Array, q: Array) -> list[tuple[float, float]]:
 
 
 def _resultant_roots(p: Array, q: Array) -> list[float]:
-    """The u at which Sylvester's matrix in v is singular: eigenvalues of its companion matrix."""
+    """The u in [0, 1] at which Sylvester's matrix in v is singular."""
+    return _in_unit(_real(_eigenvalues(p, q)))
+
+
+def _real(values: NDArray[Any]) -> Array:
+    return np.asarray(values[np.abs(values.imag) < REAL].real)
+
+
+def _eigenvalues(p: Array, q: Array) -> NDArray[Any]:
+    """Those of the companion matrix of Sylvester's matrix in v, which are finite."""
     m, n = p.shape[1] - 1, q.shape[1] - 1
     degree = max(p.shape[0], q.shape[0]) - 1
     size = m + n
@@ -132,9 +142,7 @@ def _resultant_roots(p: Array, q: Array) -> list[float]:
     right[-size:, -size:] = parts[-1]
     left[-size:] = -np.concatenate(parts[:-1], axis=1)
     values = eig(left, right, right=False)
-    values = values[np.isfinite(values)]
-    near = values[np.abs(values.imag) < REAL].real
-    return _in_unit(near)
+    return np.asarray(values[np.isfinite(values)])
 
 
 def _places(shell: Shell) -> list[Spot]:
@@ -202,6 +210,43 @@ def solve(shells: Pair, spots: Spots) -> tuple[Spots, Array]:
                 pairs.append((Spot(i, np.array([u])), Spot(j, np.array([r]))))
     far = [float(np.linalg.norm(a.jet(p, 0).x - b.jet(q, 0).x)) for p, q in pairs]
     return newton(shells, pairs[int(np.argmin(far))])
+
+
+ROWS = 72
+"""Of the companion matrix of `two_ellipsoids`: two polynomials of degree 6 in both unknowns."""
+
+
+def two_ellipsoids(a: Array, b: Array, c: Array) -> Array:
+    """The closest points (2, 3) of xᵀ a x = 1 and of zᵀ b z = 1 about c, two ellipsoids apart.
+
+    With multipliers 1/s and 1/t of |x - c - z|² / 2 Lagrange's conditions are linear in x and z:
+    (t a + s b + b a) x = s b c and s b z = -t a x. Put into both equations they leave two
+    polynomials in (s, t), of which one positive common root is that of the closest points.
+    """
+    degree = 6
+
+    def at(s: complex, t: complex) -> tuple[Any, NDArray[Any], NDArray[Any]]:
+        """The determinant, and x and z times it."""
+        matrix = t * a + s * b + b @ a
+        below = np.linalg.det(matrix)
+        x = below * np.linalg.solve(matrix, b @ c)
+        return below, s * x, -t * np.linalg.solve(b, a @ x)
+
+    def errors(s: complex, t: complex) -> NDArray[Any]:
+        below, x, z = at(s, t)
+        return np.array([x @ a @ x - below**2, z @ b @ z - below**2])
+
+    unit = np.exp(2j * np.pi * np.arange(degree + 1) / (degree + 1))
+    values = np.array([[errors(s, t) for t in unit] for s in unit])
+    p, q = np.fft.fft2(values, axes=(0, 1), norm="forward").real.transpose(2, 0, 1)
+    best, found = np.inf, np.zeros((2, 3))
+    for s in _real(_eigenvalues(p, q)):
+        for t in _real(np.roots((s ** np.arange(degree + 1) @ p)[::-1])):
+            below, x, z = at(s, t)
+            off = float(np.abs(errors(s, t)).max() / below**2)
+            if min(s, t) > 0.0 and off < best:
+                best, found = off, np.array([x / below, c + z / below])
+    return found
 
 
 def roots_of_two_faces(m: int, n: int) -> int:

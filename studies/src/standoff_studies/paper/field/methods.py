@@ -215,9 +215,6 @@ COLD_STRETCHES = {"A": 12, "B": 12, "C": 6, "D": 8, "E": 2, "drawn": 1}
 SOLVED = 12
 """Stretches of which a frame is given to the resultants."""
 
-MOST_PAIRS = {"gjk": 50, "boxes": 4}
-"""Drawn pairs that these methods are given, for the time they take; the others are given all."""
-
 TO_A_POINT = ("A", "B", "D")
 """The work in which B is a point."""
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff_studies.paper.field.methods import METHODS, MOST_PAIRS, Found
+from standoff_studies.paper.field.methods import METHODS, Found
 from standoff_studies.paper.field.work import DURATIONS, Work, drawn_work, simulation
 
 SUMMARY = "summary.json"
@@ -57,21 +57,19 @@ class Row(NamedTuple):
 
 
 class Size(NamedTuple):
-    """How much work: stretches of a motion evenly and at switches, their frames, starts, and drawn
-    pairs."""
+    """How much work: stretches of a motion evenly and at switches, their frames, starts, drawn
+    pairs, and how many of these interval Newton is given, which takes two seconds of each."""
 
     evenly: int
     switches: int
     frames: int
     starts: int
     pairs: int
+    boxes: int = 250
 
 
 FULL = Size(evenly=20, switches=20, frames=4, starts=40, pairs=1000)
-"""The committed study: five minutes of one core."""
-
-SMALL = Size(evenly=2, switches=2, frames=3, starts=4, pairs=2)
-"""The figure made anew: half a minute."""
+"""The committed study: a quarter of an hour of one core."""
 
 
 def works(size: Size) -> Iterator[Work]:
@@ -82,13 +80,15 @@ def works(size: Size) -> Iterator[Work]:
         yield drawn_work(number, size.frames)
 
 
-def study(some: Iterable[Work], methods: Iterable[str] = METHODS) -> tuple[Row, ...]:
+def study(
+    some: Iterable[Work], methods: Iterable[str] = METHODS, boxes: int = FULL.boxes
+) -> tuple[Row, ...]:
     """Run methods on some work; work of the same name makes one row."""
     keys = tuple(methods)
     found: dict[tuple[str, str], Found] = {}
     for work in some:
         for key in keys:
-            if work.number >= MOST_PAIRS.get(key, np.inf):
+            if key == "boxes" and work.number >= boxes:
                 continue
             done = METHODS[key].run(work)
             if done is not None:
@@ -129,9 +129,3 @@ def committed() -> tuple[Row, ...]:
     """The study as last run and stored."""
     text = (files(__package__) / SUMMARY).read_text("utf-8")
     return tuple(Row(**row) for row in json.loads(text))
-
-
-@cache
-def anew() -> tuple[Row, ...]:
-    """A small study, run now."""
-    return study(works(SMALL))

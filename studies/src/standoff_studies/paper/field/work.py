@@ -10,7 +10,8 @@ import numpy as np
 
 from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
-from standoff.tracking import Feature, Proximity, distance
+from standoff.recording import track
+from standoff.tracking import Feature, Proximity, Tracker, distance
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, Pair, pair, set_apart
 from standoff_studies.paper.field.shells import Shell, Spot
 from standoff_studies.paper.pair_simulation import REST, Place, Start
@@ -20,10 +21,7 @@ STEP = 1e-3
 """Frame time [s]: the paper's 1 kHz."""
 
 LOOKS = 240
-"""Frames at which a motion is searched for switches."""
-
-HALVINGS = 20
-"""Halvings of the time in which a switch was seen: to far less than a frame."""
+"""Frames in which a motion is tracked for its switches, whose instants are located within them."""
 
 SEED = 56
 
@@ -118,38 +116,19 @@ def spot_at(place: Place) -> Spot:
     return Spot(0 if kind == "vertex" else index, np.array(parameters, dtype=float))
 
 
-def _switches(pair: Pair, duration: float) -> list[float]:
-    """Return when the features of the closest points change [s], as far as the looks show."""
-
-    def features(time: float) -> tuple[Feature, Feature]:
-        found = distance(pair.a, pair.b, REST.pose(time), pair.path.pose(time))
-        return found.feature_a, found.feature_b
-
-    times = np.linspace(0.0, duration, LOOKS + 1).tolist()
-    seen = [features(time) for time in times]
-    found = []
-    for k in range(LOOKS):
-        if seen[k] != seen[k + 1]:
-            low, high = times[k], times[k + 1]
-            for _ in range(HALVINGS):
-                middle = 0.5 * (low + high)
-                low, high = (middle, high) if features(middle) == seen[k] else (low, middle)
-            found.append(high)
-    return found
-
-
 DURATIONS = {"A point": 3.1, "B": 1.5, "C": 12.0, "D patches": 5.34, "E patches": 4.0}
 """The motions of simulations A to E [s]; of B the part outside."""
 
 
 def simulation(key: str, evenly: int, switches: int, frames: int, starts: int) -> Work:
     """Return a simulation's work: stretches evenly over its motion, and one about each of its
-    first switches, at most so many."""
+    first switches, at most so many, which is in the middle of a frame."""
     one, duration = pair(key), DURATIONS[key]
     last = duration - (frames + 1) * STEP
     even = np.linspace(0.0, last, evenly).tolist()
-    about = [min(max(t - 0.5 * frames * STEP, 0.0), last) for t in _switches(one, duration)]
-    about = about[:switches]
+    run = track(Tracker(one.a, one.b, duration / LOOKS), REST, one.path, duration)
+    seen = [event.time for event in run.events[:switches]]
+    about = [min(max(t - 0.5 * (frames + 1) * STEP, 0.0), last) for t in seen]
     return Work(key[0], one, (*even, *about), frames, starts)
 
 

@@ -129,7 +129,7 @@ def _smooth(runs: Runs) -> Statement:
         "forces are rendered without jumps where the closest features change",
         f"largest step of force {steps.taken.max():.3f} N, {part:.2f} of what stiffness, damping "
         f"and motion explain; at the {len(switched)} switches in contact "
-        f"{steps.taken[switched].max():.3f} N",
+        f"{steps.taken[switched].max(initial=0.0):.3f} N",
         part <= 1.0 + ROUND and len(switched) >= 3,
     )
 
