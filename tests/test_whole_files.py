@@ -44,6 +44,8 @@ def writing(call: ast.Call) -> bool:
         "shutil.move",
     ):
         return True
+    if name == "dump" and len(call.args) == 1 and not call.keywords:
+        return False  # a pickler's, to the stream that it was made with, whose opening is seen
     if name in DRAWN:
         sink = call.args[DRAWN[name]] if len(call.args) > DRAWN[name] else None
         # Our own write_table takes the stream last, like pyarrow's.

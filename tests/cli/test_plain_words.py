@@ -90,6 +90,7 @@ NEVER_ONE = {
     ("automaton/picture.py", "feature"): "shown where not all of several are",
     ("automaton/picture.py", "mode"): "as many as fill a picture",
     ("cad/making.py", "face"): "more than can be read",
+    ("clearance/report.py", "pair"): "of a fit that covers several",
     ("cli/summary.py", "event"): "the first eight",
     ("cli/summary.py", "part"): "what a translation does",
     ("sweep/reading.py", "row"): "more than can be swept",

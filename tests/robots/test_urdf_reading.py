@@ -147,6 +147,16 @@ def test_a_capsule_may_be_written_as_a_cylinder_and_two_spheres(tmp_path: Path) 
     assert abs(least - alone) <= 1e-12
 
 
+def test_a_cylinder_may_be_named_as_a_capsule(tmp_path: Path) -> None:
+    """Pinocchio's ``<collision_checking>``, as in its humanoid."""
+    shape = '<collision name="rod"><origin xyz="0 0 2"/>'
+    for name, kind in (("rod", "capsule"), ("other", "cylinder")):
+        checking = f'<collision_checking><capsule name="{name}"/></collision_checking>'
+        text = robot(**{'<collision><origin xyz="0 0 2"/>': checking + shape})
+        told = read(tmp_path, text).report()
+        assert re.search(rf"c_0 +c +{kind} +exact", str(told)), told
+
+
 def test_what_is_not_read_is_told(tmp_path: Path) -> None:
     text = robot(**{"<collision>": "<shape_of_my_own>", "</collision>": "</shape_of_my_own>"})
     notes = read(tmp_path, text).report().notes

@@ -81,7 +81,7 @@ ELEMENTS = {
 }
 """Those that say where geometry is, and those without which urdfdom drops their link or joint."""
 
-OF_LINK = ("inertial", "collision", "visual")
+OF_LINK = ("inertial", "collision", "visual", "collision_checking")
 OF_JOINT = ("origin", "parent", "child", "axis", "limit", "mimic", "dynamics")
 MAY_BE_MISSING = ("safety_controller", "calibration")
 OF_ROBOT = ("link", "joint")
@@ -317,9 +317,17 @@ class _Reader:
             self.notes.append(
                 f"{where} has <visual> but no <collision>: no distance of it is known"
             )
-        return [
+        found = [
             self.collision(each, f"{name}_{k}", name, f"{where}: <collision> {k}")
             for k, each in enumerate(given)
+        ]
+        # Pinocchio's own extension: named cylinders are taken for capsules
+        rounded = {each.get("name") for each in link.findall("collision_checking/capsule")}
+        return [
+            each._replace(kind="capsule")
+            if each.kind == "cylinder" and element.get("name") in rounded
+            else each
+            for each, element in zip(found, given, strict=True)
         ]
 
     def collision(self, element: Any, name: str, link: str, where: str) -> Collision:
