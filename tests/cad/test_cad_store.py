@@ -99,7 +99,8 @@ def test_a_part_is_known_in_another_file_too(
     kept: Path, block: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first = so.read_step(block)
-    other = block.with_name("dated.step")
+    other = block.parent / "dated" / block.name  # which names the part
+    other.parent.mkdir()
     other.write_text(block.read_text("utf-8") + "\n", "utf-8")
     monkeypatch.setattr("standoff.cad.making.made_part", lambda *given: pytest.fail("made again"))
     found = so.read_step(other)

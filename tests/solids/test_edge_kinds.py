@@ -86,12 +86,14 @@ def test_a_kind_holds_of_all_vectors_in_the_cones(rng) -> None:
 
     decided = 0
     for _ in range(400):
-        n, m, t = (v / np.linalg.norm(v) for v in rng.normal(size=(3, 3)))
-        angles = tuple(rng.uniform(0.0, 0.25, size=3))
-        kind = edge_kinds._kind(n, m, t, angles)
+        axes = [v / np.linalg.norm(v) for v in rng.normal(size=(3, 3))]
+        # two cones of each face's normals, one of tangents
+        n, m = ([(near(axis, 0.1), a) for a in rng.uniform(0.0, 0.2, 2)] for axis in axes[:2])
+        t, sides = (axes[2], rng.uniform(0.0, 0.25)), [edge_kinds.Side(k, 1.0) for k in (0, 1)]
+        kind = edge_kinds._decided({0: n, 1: m}, t, sides)
         sines = []
-        for _ in range(40):
-            one, two, way = (near(v, a) for v, a in zip((n, m, t), angles, strict=True))
+        for k in range(40):
+            one, two, way = (near(*cone) for cone in (n[k % 2], m[k // 2 % 2], t))
             sines.append(float(np.cross(one, two) @ way))
         if kind is EdgeKind.CONVEX:
             assert min(sines) > 0.0

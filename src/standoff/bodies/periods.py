@@ -112,9 +112,8 @@ def _boxes(c: Coedge, k: int, first: float, last: float) -> tuple[Array, Array]:
         return low[:, k], high[:, k]
     points = c.pcurve.matrix
     shares = (ends - c.first) / (c.last - c.first)
-    parts = segments(len(points) - 1, shares[:-1], shares[1:]) @ points
-    found = [bezier_box(part) for part in parts]
-    return np.array([b[0][k] for b in found]), np.array([b[1][k] for b in found])
+    low, high = bezier_box(segments(len(points) - 1, shares[:-1], shares[1:]) @ points)
+    return low[:, k], high[:, k]
 
 
 def _range(c: Coedge, k: int) -> tuple[float, float]:

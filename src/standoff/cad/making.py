@@ -19,8 +19,15 @@ from standoff.bodies.enclosed import MOST_NODES
 from standoff.bodies.moments.cells import integrate
 from standoff.bodies.moments.face_cells import face_cells
 from standoff.bodies.moments.flux import AREA, COLUMNS, Frame
+from standoff.bodies.packed_parts import packed_parts
 from standoff.bodies.report import BoundaryReport
-from standoff.bodies.tolerances import JOIN_TOLERANCE, ROUNDOFF
+from standoff.bodies.sampling import boundary_samples, check_convex
+from standoff.bodies.tolerances import (
+    CONVEXITY_TOLERANCE,
+    JOIN_TOLERANCE,
+    ROUNDOFF,
+    SAMPLED_DEFECT,
+)
 from standoff.bodies.topology import Face
 from standoff.cad.assembly import PartReport
 from standoff.cad.closed_bounds import sphere_bound
@@ -290,7 +297,11 @@ def _convex(boundary: Boundary, pieces: Pieces, joined: Joined) -> Body | None:
     bent = {EdgeKind.REFLEX, EdgeKind.MIXED}
     if getattr(found, "cavities", ()) or bent & set(boundary.edge_kinds):
         return None
+    rough = packed_parts(joined.parts)
+    samples = boundary_samples(joined.parts, rough.ints, rough.reals)
+    allowed = (CONVEXITY_TOLERANCE + SAMPLED_DEFECT) * boundary.size + 2.0 * joined.residual
     try:
+        check_convex(samples, boundary.size, allowed)  # which is no proof, and soon done
         parts = np.reshape(pieces.vertices, (-1, 3)), pieces.edges, pieces.faces
         return proven_again(parts, boundary.name, 0.0, joined.tolerance, joined.residual)
     except StandoffError:

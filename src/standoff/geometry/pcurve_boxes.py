@@ -62,11 +62,11 @@ def pcurve_bends(kind: int, matrix: Array, ends: Array) -> Array:
 
 
 def bezier_box(points: Array) -> tuple[Array, Array]:
-    """(low, high), each (2,), around a rational Bezier curve's points (n, 3), homogeneous
+    """(low, high), each (..., 2), around rational Bezier curves' points (..., n, 3), homogeneous
     (w u, w v, w)."""
-    places = points[:, :2] / points[:, 2:]
-    margin = BOX_MARGIN * np.abs(places).max(axis=0)
-    return places.min(axis=0) - margin, places.max(axis=0) + margin
+    places = points[..., :2] / points[..., 2:]
+    margin = BOX_MARGIN * np.abs(places).max(axis=-2)
+    return places.min(axis=-2) - margin, places.max(axis=-2) + margin
 
 
 def bezier_bend(points: Array) -> Array:

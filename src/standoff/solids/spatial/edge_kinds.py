@@ -11,7 +11,7 @@ one place decides; so it does along a line of two faces with one normal each alo
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -126,21 +126,27 @@ def _tangents(curve: Curve, parts: list[Range]) -> list[Cone]:
 
 def _decided(cones: dict[int, list[Cone]], tangent: Cone, sides: list[Side]) -> EdgeKind | None:
     """The kind of a part of an edge by the cones of its faces' normals and of its tangents."""
-    kinds = set()
-    for n, a in cones.get(sides[0].face, []):
-        for m, b in cones.get(sides[1].face, []):
-            kinds.add(_kind(n, m, tangent[0] * sides[0].way, (a, b, tangent[1])))
-    return kinds.pop() if len(kinds) == 1 else None
-
-
-def _kind(n: Array, m: Array, t: Array, angles: tuple[float, float, float]) -> EdgeKind | None:
-    if float(between(n, m)) + angles[0] + angles[1] + TURN_ROUNDING <= SMOOTH_ANGLE:
-        return EdgeKind.SMOOTH
-    sine = float(np.cross(n, m) @ t)
-    spare = sum(2.0 * float(np.sin(0.5 * min(angle, np.pi))) for angle in angles) + TURN_ROUNDING
-    if abs(sine) <= spare:
+    ones, others = (cones.get(side.face, []) for side in sides)
+    if not ones or not others:
         return None
-    return EdgeKind.CONVEX if sine > 0.0 else EdgeKind.REFLEX
+    (n, a), (m, b) = (
+        (np.array([axis for axis, _ in each]).T, np.array([angle for _, angle in each]))
+        for each in (ones, others)
+    )
+    return _kind(n, m, tangent[0] * sides[0].way, (a[:, None], b, tangent[1]))
+
+
+def _kind(n: Array, m: Array, t: Array, angles: tuple[Any, Any, float]) -> EdgeKind | None:
+    """The kind where normals n (3, k) and m (3, l), of cones of these half angles, (k, 1) and (l,),
+    meet along t; None where it isn't the same of all, or some do not decide."""
+    n, m = n[:, :, None], m[:, None, :]
+    if (between(n, m) + angles[0] + angles[1] + TURN_ROUNDING <= SMOOTH_ANGLE).all():
+        return EdgeKind.SMOOTH
+    sine = np.einsum("i...,i->...", np.cross(n, m, axis=0), t)
+    spare = sum(2.0 * np.sin(0.5 * np.minimum(angle, np.pi)) for angle in angles) + TURN_ROUNDING
+    if (np.abs(sine) <= spare).any() or (sine > 0.0).any() != (sine > 0.0).all():
+        return None
+    return EdgeKind.CONVEX if sine.flat[0] > 0.0 else EdgeKind.REFLEX
 
 
 def _constant(
@@ -173,7 +179,7 @@ def _constant(
         normals.append(np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v)))
         tangent = np.asarray(curve.jet(t)[1], dtype=float)
     way = sides[0].way * tangent / np.linalg.norm(tangent)
-    return _kind(normals[0], normals[1], way, (0.0, 0.0, 0.0))
+    return _kind(normals[0][:, None], normals[1][:, None], way, (0.0, 0.0, 0.0))
 
 
 def _one_surface(one: FaceChart, other: FaceChart, size: float) -> bool:
