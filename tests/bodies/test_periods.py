@@ -64,10 +64,11 @@ def ring(u: float, v: float, a: float, b: float) -> NurbsPcurve:
     return NurbsPcurve(np.array([u, v]) + np.array(corners) * [a, b], knots, weights)
 
 
-def wave(start: float) -> NurbsPcurve:
-    """A rim near v = EDGE that goes up and down, once round from `start` on."""
+def wave(start: float, gap: float = 0.0) -> NurbsPcurve:
+    """A rim near v = EDGE that goes up and down, once round from `start` on but for a gap."""
     rises = EDGE + 0.15 * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
-    points = np.column_stack([start + PERIOD * np.linspace(0.0, 1.0, 5), rises])
+    along = np.linspace(start + 0.5 * gap, start + PERIOD - 0.5 * gap, 5)
+    points = np.column_stack([along, rises])
     return NurbsPcurve(points, [0.0] * 4 + [0.5] + [1.0] * 4)
 
 
@@ -75,9 +76,11 @@ def level(v: float, start: float) -> Pcurve:
     return Pcurve(L.LINE, np.array([[1.0, 0.0, start], [0.0, 0.0, v], [0.0, 0.0, 1.0]]))
 
 
-def banded(holes: list[tuple[float, float, float, float]], upper: Pcurve) -> Chart:
-    """A band from v = -EDGE to a rim, with holes."""
-    pcurves = [(level(-EDGE, 0.3), 1, (0.0, PERIOD))]
+def banded(
+    holes: list[tuple[float, float, float, float]], upper: Pcurve, lower: float = 0.3
+) -> Chart:
+    """A band from v = -EDGE, a rim that begins at u = lower, to another rim, with holes."""
+    pcurves = [(level(-EDGE, lower), 1, (0.0, PERIOD))]
     pcurves += [(upper, -1, (0.0, PERIOD if upper.kind == L.LINE else 1.0))]
     pcurves += [(ring(*hole), -1, (0.0, 4.0)) for hole in holes]
     coedges = [
@@ -146,6 +149,19 @@ def test_a_face_is_the_same_in_every_period(name: str, upper: str, rng: Generato
             assert s == pytest.approx(steps[off[0]], abs=3e-3)
         elif by.min() > 1e-3:
             assert (s, hit) == (1.0, trimming.NO_HIT)
+
+
+@pytest.mark.parametrize("start", [0.0, 2.0, 12.0])
+@pytest.mark.parametrize("gap", [1e-11, 1e-9, 1e-7])
+def test_ends_of_a_rim_that_miss_each_other(gap: float, start: float) -> None:
+    """In the gap, too, a face is what lies below its rim; the other rim may end in the gap."""
+    for lower in start + gap * np.linspace(-0.7, 0.7, 5):
+        chart = banded([], wave(start, gap), lower)
+        in_one_period(chart)
+        ints, reals = packed(chart)
+        for u in start + gap * np.linspace(-1.5, 1.5, 61):
+            for v in (-0.95, -0.7, 0.0, 0.7, 0.9):
+                assert on_face(ints, reals, 0, u, v) == (abs(v) < EDGE), (lower, u - start, v)
 
 
 def test_what_fits_stays_as_it_is() -> None:

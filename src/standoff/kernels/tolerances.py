@@ -87,6 +87,9 @@ AIM_STEP = 0.1113
 # A ray with a smaller sine to the curve that it is aimed at is not cast: its crossings would be
 # ends of curves.
 ALONG_AIM = 1e-9
+# Nor is one that is aimed at less of a curve than this part of its way there (dimensionless): it
+# may pass through a gap between curves that meet but for a file's tolerance.
+SLIVER_AIM = 1e-6
 
 # An atlas's chart is left when |u| or |v| passes RECHART (dimensionless, gnomonic).
 RECHART = 1.2

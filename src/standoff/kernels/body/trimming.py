@@ -23,6 +23,7 @@ from standoff.kernels.tolerances import (
     PCURVE_OVERLAP,
     RAYS,
     SAME_CROSSING,
+    SLIVER_AIM,
     TOUCH_WIDTH,
 )
 from standoff.kernels.values import Hit
@@ -298,8 +299,11 @@ def on_face(ints, reals, chart, u, v):
         if away <= noise:
             return True
         across, up = v - y, x - u
-        # along its aim a ray may pass through the ends of what it is aimed at
-        if abs(tx * across + ty * up) <= ALONG_AIM * hypot(tx, ty) * away:
+        # along its aim a ray may pass through the ends of what it is aimed at, as it may where a
+        # sliver is all that a period's end has left of a rim
+        speed = hypot(tx, ty)
+        along = abs(tx * across + ty * up) <= ALONG_AIM * speed * away
+        if along or speed * (reals[o + 1] - reals[o]) <= SLIVER_AIM * away:
             continue
         side = ray_side(ints, reals, r, u, v, up, -across)
         if side != 0:
