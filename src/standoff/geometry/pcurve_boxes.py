@@ -70,24 +70,27 @@ def bezier_box(points: Array) -> tuple[Array, Array]:
 
 
 def bezier_bend(points: Array) -> Array:
-    """(2,) bounds of |u''| and |v''| over the parameter in [0, 1], of a rational Bezier curve's
-    points (n, 3), homogeneous (w u, w v, w).
+    """(..., 2) bounds of |u''| and |v''| over the parameter in [0, 1], of rational Bezier curves'
+    points (..., n, 3), homogeneous (w u, w v, w).
 
     With c = h / w moved so that its middle is 0, c' = (h' - c w') / w and
     c'' = (h'' - 2 c' w' - c w'') / w; nets bound each.
     """
-    w = points[:, 2]
-    places = points[:, :2] / w[:, None]
-    middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
-    degree = len(points) - 1
-    moved = points[:, :2] - w[:, None] * middle
-    slopes, bends = degree * np.diff(moved, axis=0), np.zeros((1, 2))
-    w_slope, w_bend = degree * np.diff(w), np.zeros(1)
+    w = points[..., 2:]
+    places = points[..., :2] / w
+    middle = 0.5 * (places.min(axis=-2, keepdims=True) + places.max(axis=-2, keepdims=True))
+    degree = points.shape[-2] - 1
+    slopes = degree * np.diff(points[..., :2] - w * middle, axis=-2)
+    w_slope = degree * np.diff(w, axis=-2)
     if degree > 1:
-        bends = (degree - 1) * np.diff(slopes, axis=0)
-        w_bend = (degree - 1) * np.diff(w_slope)
-    least = float(w.min())
-    away = np.abs(places - middle).max(axis=0)
-    first = (np.abs(slopes).max(axis=0) + away * np.abs(w_slope).max()) / least
-    second = np.abs(bends).max(axis=0) + 2.0 * first * np.abs(w_slope).max()
-    return np.asarray((second + away * np.abs(w_bend).max()) / least)
+        bends, w_bend = (
+            (degree - 1) * np.diff(slopes, axis=-2),
+            (degree - 1) * np.diff(w_slope, axis=-2),
+        )
+    else:
+        bends, w_bend = 0.0 * slopes, 0.0 * w_slope
+    least, away = w.min(axis=-2), np.abs(places - middle).max(axis=-2)
+    turn = np.abs(w_slope).max(axis=-2)
+    first = (np.abs(slopes).max(axis=-2) + away * turn) / least
+    second = np.abs(bends).max(axis=-2) + 2.0 * first * turn
+    return np.asarray((second + away * np.abs(w_bend).max(axis=-2)) / least)

@@ -10,7 +10,7 @@ import numpy as np
 from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import chart_row
-from standoff.geometry.bernstein import segment
+from standoff.geometry.bernstein import segments
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_bends, pcurve_boxes
 from standoff.geometry.validation import Array
@@ -67,13 +67,53 @@ class Piece:
 def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece]:
     """The pieces of all trimming curves; on periodic charts with their images a turn away that the
     chart's rectangle reaches."""
-    found = []
-    for number, chart in charts.items():
+    coedges = []
+    for number in charts:
         row = chart_row(boundary, number)
         first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-        for coedge in range(first, first + count):
-            for piece in _pieces(boundary, number, coedge):
-                found += _shifted(piece, chart) if chart.surface.periodic else [piece]
+        coedges += [(number, coedge) for coedge in range(first, first + count)]
+    ends = {coedge: _ends(boundary, coedge) for _, coedge in coedges}
+    bounds = _bounds(boundary, ends)
+    found = []
+    for number, coedge in coedges:
+        chart = charts[number]
+        for piece in _pieces(boundary, number, coedge, ends[coedge], bounds[coedge]):
+            found += _shifted(piece, chart) if chart.surface.periodic else [piece]
+    return found
+
+
+def _edge_of(boundary: PackedParts, coedge: int) -> int:
+    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+    return int(boundary.ints[row + L.COEDGE_EDGE])
+
+
+def _ends(boundary: PackedParts, coedge: int) -> Array:
+    """Ascending parameters (n + 1,) that part a packed coedge."""
+    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
+    first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
+    ends = np.linspace(first, last, PARTS[kind] + 1)
+    edge = _edge_of(boundary, coedge)
+    curve = boundary.edge_parts[edge].curve if edge >= 0 else None
+    if curve is None or isinstance(curve, Line | ConicArc):
+        return ends
+    spans = [t for t in curve.spans().tolist() if first < t < last]
+    return np.unique(np.concatenate([ends, spans]))
+
+
+def _bounds(boundary: PackedParts, ends: dict[int, Array]) -> dict[int, Array]:
+    """(n, 4) bounds of derivatives along each part of coedges, of all parts of an edge at once."""
+    found = {coedge: np.zeros((len(t) - 1, 4)) for coedge, t in ends.items()}
+    of_edge: dict[int, list[int]] = {}
+    for coedge in ends:
+        of_edge.setdefault(_edge_of(boundary, coedge), []).append(coedge)
+    for edge, coedges in of_edge.items():
+        if edge < 0:
+            continue  # a collapsed side
+        ranges = [part for coedge in coedges for part in pairwise(ends[coedge].tolist())]
+        rows = curve_derivatives(boundary.edge_parts[edge].curve, ranges)
+        counts = np.cumsum([len(found[coedge]) for coedge in coedges])
+        found.update(zip(coedges, np.split(rows, counts[:-1]), strict=True))
     return found
 
 
@@ -93,62 +133,46 @@ def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
     return found
 
 
-def _pieces(boundary: PackedParts, chart: int, coedge: int) -> list[Piece]:
+def _pieces(
+    boundary: PackedParts, chart: int, coedge: int, ends: Array, bounds: Array
+) -> list[Piece]:
     row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
     at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
-    edge = int(boundary.ints[row + L.COEDGE_EDGE])
-    first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
-    at += L.PCURVE_DATA
-    curve = boundary.edge_parts[edge].curve if edge >= 0 else None
-    ends = np.linspace(first, last, PARTS[kind] + 1)
-    if curve is not None and not isinstance(curve, Line | ConicArc):
-        spans = [t for t in curve.spans().tolist() if first < t < last]
-        ends = np.unique(np.concatenate([ends, spans]))
-    ranges = [(float(a), float(b)) for a, b in pairwise(ends)]
-    bounds = np.zeros((len(ranges), 4)) if curve is None else curve_derivatives(curve, ranges)
+    edge = _edge_of(boundary, coedge)
     found = []
-    boxes, bends = _boxes(boundary, kind, at, ends), _bends(boundary, kind, at, ends)
-    for (a, b), d, (low, high), bend in zip(ranges, bounds, boxes, bends, strict=True):
-        straight = None
-        if kind == L.LINE and (bend == 0.0).all():
+    lows, highs, bends = _boxes(boundary, kind, at + L.PCURVE_DATA, ends)
+    for k, (a, b) in enumerate(pairwise(ends.tolist())):
+        low, high, straight = lows[k], highs[k], None
+        if kind == L.LINE and (bends[k] == 0.0).all():
             straight = np.array(
                 [coedge_parameters(boundary.ints, boundary.reals, coedge, t)[:2] for t in (a, b)]
             )
             # along an isoline the level is one number, free of the box's margin
             low, high = straight.min(axis=0), straight.max(axis=0)
-        found.append(Piece(coedge, chart, edge, a, b, low, high, bend, 0.0, d, straight))
+        found.append(
+            Piece(coedge, chart, edge, a, b, low, high, bends[k], 0.0, bounds[k], straight)
+        )
     return found
 
 
-def _boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> list[tuple[Array, Array]]:
-    """(low, high) in (u, v) of each part of a packed trimming curve."""
+def _boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> tuple[Array, Array, Array]:
+    """(low, high) in (u, v) of each part of a packed trimming curve, and the greatest second
+    derivatives of u and v along it, each (n, 2)."""
     if kind == L.BEZIER:
-        return [bezier_box(points) for points in _bezier_parts(boundary, at, ends)]
-    low, high = pcurve_boxes(kind, boundary.reals[at : at + 9].reshape(3, 3), ends)
-    return list(zip(low, high, strict=True))
-
-
-def _bezier_parts(boundary: PackedParts, at: int, ends: Array) -> list[Array]:
-    """Homogeneous points of the parts of a packed rational Bezier curve."""
-    count = 3 * (int(boundary.reals[at]) + 1)
-    points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-    shares = (ends - ends[0]) / (ends[-1] - ends[0])
-    return [segment(len(points) - 1, a, b) @ points for a, b in pairwise(shares.tolist())]
-
-
-def _bends(boundary: PackedParts, kind: int, at: int, ends: Array) -> Array:
-    """(n, 2) greatest second derivatives of u and v along each part of a packed trimming curve."""
-    count = len(ends) - 1
-    if kind == L.BEZIER:
-        bends = np.array([bezier_bend(points) for points in _bezier_parts(boundary, at, ends)])
-        return bends / np.diff(ends)[:, None] ** 2 * (1.0 + BEND_SPARE)
+        count = 3 * (int(boundary.reals[at]) + 1)
+        points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
+        shares = (ends - ends[0]) / (ends[-1] - ends[0])
+        parts = segments(len(points) - 1, shares[:-1], shares[1:]) @ points
+        bends = bezier_bend(parts) / np.diff(ends)[:, None] ** 2 * (1.0 + BEND_SPARE)
+        return *bezier_box(parts), bends
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
     if (matrix[2, :2] != 0.0).any():
-        return pcurve_bends(kind, matrix, ends)
-    if kind == L.LINE:
-        return np.zeros((count, 2))
-    bend = np.hypot(matrix[:2, 0], matrix[:2, 1]) / abs(float(matrix[2, 2]))
-    return np.tile(bend * (1.0 + BEND_SPARE), (count, 1))
+        bends = pcurve_bends(kind, matrix, ends)
+    else:
+        across = np.hypot(matrix[:2, 0], matrix[:2, 1]) / abs(float(matrix[2, 2]))
+        bend = np.zeros(2) if kind == L.LINE else across * (1.0 + BEND_SPARE)
+        bends = np.tile(bend, (len(ends) - 1, 1))
+    return *pcurve_boxes(kind, matrix, ends), bends
 
 
 def edge_ranges(curve: Curve, arc: float, longest: float) -> list[tuple[float, float]]:
