@@ -17,7 +17,7 @@ FEW = 6
 AT_ATLASES = ((418, 11), (474, 11))
 """Balls cut by planes: nearest to a vertex of a face that has several charts are points inside."""
 
-AT_A_GAP = ((86, 11),)
+AT_A_GAP = ((86, 11), (518, 11))
 """A ball's face whose trimming curves miss each other by 6e-12 at the end of a period."""
 
 

@@ -100,51 +100,61 @@ class Crossings:
         every = _steep(self.leaves.bounds[met], frame[0])
         if not (grazing or every.all()):
             return None
-        for k, steep in zip(met, every, strict=True):
-            chart = self.charts[int(self.leaves.charts[k])]
-            row = self.leaves.rectangles[k]
-            cross = self._crossing if steep else self._grazed
-            found = cross(chart, row, at, frame)
-            if found is None:
-                return None
-            hits += found
+        for key in np.unique(self.leaves.charts[met]):
+            chart, own = self.charts[int(key)], self.leaves.charts[met] == key
+            rows, steep = self.leaves.rectangles[met[own]], every[own]
+            for cross, part in ((self._crossings, rows[steep]), (self._grazed, rows[~steep])):
+                found = cross(chart, part, at, frame) if len(part) else []
+                if found is None:
+                    return None
+                hits += found
         if any(abs(t) <= self.near for t, _ in hits):
             return True
         return _parity([hit for hit in hits if hit[0] > 0.0], self.near)
 
-    def _crossing(
-        self, chart: FaceChart, row: Array, at: Array, frame: Array
-    ) -> list[tuple[float, float]]:
-        """(distance along the ray, +1 where it leads out) of a crossing in one steep rectangle."""
-        root = self._root(chart, row, at, frame)
-        packed = self.boundary.ints, self.boundary.reals
-        if root is None or not on_face(*packed, chart.number, *root):
-            return []
-        x, xu, xv, *_ = chart.surface.jet(*root)
-        out = chart.outward * float(np.sign(np.cross(xu, xv) @ frame[0]))
-        return [(float(frame[0] @ x - at[0]), out)]
-
-    def _grazed(
-        self, chart: FaceChart, row: Array, at: Array, frame: Array
+    def _crossings(
+        self, chart: FaceChart, rows: Array, at: Array, frame: Array
     ) -> list[tuple[float, float]] | None:
-        """The same for a rectangle that a ray may graze; None where it does."""
-        hits, rows = [], row[None]
+        """(distance along the ray, +1 where it leads out) of each crossing in steep rectangles;
+        None where one may be missed: Newton's method alone proves no rectangle free of them."""
+        hits, missed = [], []
+        for row in rows:
+            root = self._root(chart, row, at, frame)
+            if root is None:
+                missed.append(row)
+            elif on_face(self.boundary.ints, self.boundary.reals, chart.number, *root):
+                x, xu, xv, *_ = chart.surface.jet(*root)
+                out = chart.outward * float(np.sign(np.cross(xu, xv) @ frame[0]))
+                hits.append((float(frame[0] @ x - at[0]), out))
+        rows = np.reshape(missed, (-1, 4))
         for _ in range(MOST_QUARTERINGS):
-            steep = _steep(chart.surface.bounds(rows), frame[0])
-            for part in rows[steep]:
-                hits += self._crossing(chart, part, at, frame)
-            rows = quartered(rows[~steep])
-            if not len(rows):
-                return hits
-            low, high = chart.surface.extents(rows, frame)
-            spare = self.near
-            meets = ((low[1:] - spare <= at[1:, None]) & (at[1:, None] <= high[1:] + spare)).all(
-                axis=0
-            )
-            rows = rows[meets & (high[0] + spare >= at[0])]
+            rows = self._met(chart, quartered(rows), at, frame)
             if not len(rows):
                 return hits
         return None
+
+    def _grazed(
+        self, chart: FaceChart, rows: Array, at: Array, frame: Array
+    ) -> list[tuple[float, float]] | None:
+        """The same for rectangles that a ray may graze; None where it does."""
+        hits: list[tuple[float, float]] = []
+        for _ in range(MOST_QUARTERINGS):
+            steep = _steep(chart.surface.bounds(rows), frame[0])
+            found = self._crossings(chart, rows[steep], at, frame)
+            if found is None:
+                return None
+            hits += found
+            rows = self._met(chart, quartered(rows[~steep]), at, frame)
+            if not len(rows):
+                return hits
+        return None
+
+    def _met(self, chart: FaceChart, rows: Array, at: Array, frame: Array) -> Array:
+        """Those of some rectangles that a ray may meet."""
+        if not len(rows):
+            return rows
+        low, high = chart.surface.extents(rows, frame)
+        return rows[_meets(at, low - self.near, high + self.near)]
 
     def _root(
         self, chart: FaceChart, row: Array, at: Array, frame: Array
