@@ -12,22 +12,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.assembly import Joined, joined_parts
-from standoff.bodies.body import Body, proven_again
+from standoff.bodies.body import Body, made_body
 from standoff.bodies.boundary import Boundary, EdgeKind, made_boundary
 from standoff.bodies.charts import loop_pcurve
 from standoff.bodies.enclosed import MOST_NODES
+from standoff.bodies.finishing import finish
 from standoff.bodies.moments.cells import integrate
 from standoff.bodies.moments.face_cells import face_cells
 from standoff.bodies.moments.flux import AREA, COLUMNS, Frame
-from standoff.bodies.packed_parts import packed_parts
 from standoff.bodies.report import BoundaryReport
-from standoff.bodies.sampling import boundary_samples, check_convex
-from standoff.bodies.tolerances import (
-    CONVEXITY_TOLERANCE,
-    JOIN_TOLERANCE,
-    ROUNDOFF,
-    SAMPLED_DEFECT,
-)
+from standoff.bodies.tolerances import JOIN_TOLERANCE, ROUNDOFF
 from standoff.bodies.topology import Face
 from standoff.cad.assembly import PartReport
 from standoff.cad.closed_bounds import sphere_bound
@@ -129,7 +123,7 @@ def _made(
     volume, room = judged(solid, "volume", found.volume, near)
     if abs(found.volume - volume) > room:
         raise Refused(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")
-    body = _convex(boundary, pieces, joined)
+    body = _convex(boundary, joined)
     made = _not_crossing(boundary, pieces) if body is None else None
     places = () if made is None else made.self_intersections.lines()
     report = replace(
@@ -291,18 +285,14 @@ def face_area(boundary: Boundary, number: int, size: float) -> float:
     return float(found.values[AREA]) * size**2
 
 
-def _convex(boundary: Boundary, pieces: Pieces, joined: Joined) -> Body | None:
+def _convex(boundary: Boundary, joined: Joined) -> Body | None:
     """The same as a body with its proofs; None if it is not convex."""
     found = boundary.check()
+    assert isinstance(found, BoundaryReport)
     bent = {EdgeKind.REFLEX, EdgeKind.MIXED}
-    if getattr(found, "cavities", ()) or bent & set(boundary.edge_kinds):
+    if len(found.shells) > 1 or bent & set(boundary.edge_kinds):
         return None
-    rough = packed_parts(joined.parts)
-    samples = boundary_samples(joined.parts, rough.ints, rough.reals)
-    allowed = (CONVEXITY_TOLERANCE + SAMPLED_DEFECT) * boundary.size + 2.0 * joined.residual
     try:
-        check_convex(samples, boundary.size, allowed)  # which is no proof, and soon done
-        parts = np.reshape(pieces.vertices, (-1, 3)), pieces.edges, pieces.faces
-        return proven_again(parts, boundary.name, 0.0, joined.tolerance, joined.residual)
+        return made_body(boundary.name, 0.0, finish(joined, 0.0, None))
     except StandoffError:
         return None
