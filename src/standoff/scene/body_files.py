@@ -87,9 +87,11 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
             "body",
         )
     lengths = UNITS.get(unit, "mm")
-    how = {"heal": heal, "tolerance": tolerance, "instead": instead}
-    parts = table.build(lambda: file_parts(path, lengths, **how), "body")
-    return _chosen(table, parts)
+
+    def parts() -> FileParts:
+        return file_parts(path, lengths, heal=heal, tolerance=tolerance, instead=instead)
+
+    return _chosen(table, table.build(parts, "body"))
 
 
 def _kept(path: Path) -> FromFile:
