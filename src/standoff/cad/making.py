@@ -120,6 +120,9 @@ def _made(
     assert isinstance(found, BoundaryReport)
     near = FILE_AREA * found.volume + found.slack * found.area
     area, notes = _checked_areas(boundary, pieces, size)
+    if pieces.recognised:
+        kinds = ", ".join(counted(n, kind) for kind, n in pieces.recognised.items())
+        notes = (*notes, f"of its splines these are others within {pieces.moved:.2g}: {kinds}")
     volume, room = judged(solid, "volume", found.volume, near)
     if abs(found.volume - volume) > room:
         raise Refused(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")

@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.topology import Apex, Edge, Face
+from standoff.cad.canonical import recognised
 from standoff.cad.curves import Converted, converted, isoline
 from standoff.cad.measures import named
 from standoff.cad.opencascade import cast, coordinates, explored, forward
 from standoff.cad.seams import once
 from standoff.cad.sphere_faces import sphere_by_angles, sphere_charts, sphere_sense
 from standoff.cad.surfaces import Carrier, basis_surface, carrier, grown
-from standoff.cad.tolerances import MISSED_POLE
+from standoff.cad.tolerances import MISSED_POLE, RECOGNISED
 from standoff.cad.trims import extent, limits_of, trim
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import FULL_TURN
@@ -42,6 +43,7 @@ class Pieces:
     sources : the file's faces.
     names : of the file's faces, as a CAD program finds them.
     trims : how often a trimming curve was "exact", the "file"'s or "fitted".
+    recognised : how often a spline was a plane, cylinder or cone.
     moved : how far a surface was moved at most, length.
     """
 
@@ -52,6 +54,7 @@ class Pieces:
     sources: list[Any] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     trims: Counter[str] = field(default_factory=Counter)
+    recognised: Counter[str] = field(default_factory=Counter)
     moved: float = 0.0
 
 
@@ -176,7 +179,12 @@ class _Maker:
         uses = once(face)
         made = [m for e in uses if not BRep_Tool.Degenerated_s(e) for m in self._edges(e, face)]
         if on.kind == "spline" and not any(BRep_Tool.Degenerated_s(e) for e in uses):
-            on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made]))
+            like = recognised(on, RECOGNISED * self.size)
+            if like is None:
+                on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made]))
+            else:  # the file's trimming curves are in the spline's parameters
+                on, made = like, [(number, edge, way, None) for number, edge, way, _ in made]
+                self.pieces.recognised[like.kind] += 1
         sense = None
         if on.kind == "sphere":
             charts, trims = sphere_charts(

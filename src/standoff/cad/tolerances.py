@@ -32,6 +32,10 @@ BOUND_FLOOR: Final = 3e-10
 """Fraction of the part's size below which the bound of a trimming curve's miss is not sharpened: a
 third of what parts may miss each other by; half of it costs a quarter more time."""
 
+RECOGNISED: Final = 1e-9
+"""Fraction of the part's size within which a spline has to be a plane, cylinder or cone to be taken
+for it: what parts may miss each other by anyway. What it is off by joins the slack."""
+
 SPHERE_DEPTH: Final = 0.15
 """Cosine from the middle of a sphere's face beyond which its trimming curves are not fitted in one
 gnomonic chart: there the chart stretches by 1 / cosine²."""
