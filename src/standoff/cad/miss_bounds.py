@@ -8,6 +8,7 @@ nearly cancels. Spans that leave too much are halved.
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.curves import Curve
 from standoff.geometry.intervals import Interval, cos, interval, sin
+from standoff.geometry.net_bounds import curve_nets
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.patch_bounds import cut
@@ -31,6 +33,13 @@ EPS = float(np.finfo(np.float64).eps)
 FIRST_SPANS = 32
 MOST_HALVINGS = 14
 MOST_OPEN = 2048
+
+
+class Parts(NamedTuple):
+    """The Bezier parts (m, p + 1, 4) of a trimming curve, in z = 0, and where they end, (m + 1,)."""
+
+    blocks: Array
+    breaks: Array
 
 
 def miss_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float) -> float:
@@ -77,9 +86,10 @@ def _interval_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float)
     flat = None
     ends = np.asarray(curve.spans(), dtype=np.float64)
     if isinstance(pcurve, NurbsPcurve):
-        w = pcurve.matrix[:, 2]
-        flat = NurbsCurve(pcurve.matrix[:, :2] / w[:, None], pcurve.knots, w)
-        ends = np.union1d(ends, flat.spans())
+        rows = np.array([span.matrix for span in pcurve.spans])
+        breaks = np.array([span.first for span in pcurve.spans] + [pcurve.spans[-1].last])
+        flat = Parts(np.insert(rows, 2, 0.0, axis=2), breaks)
+        ends = np.union1d(ends, breaks)
     ends = np.clip(ends, curve.first, curve.last)
     each = max(2, FIRST_SPANS // len(ends))
     ts = np.unique([np.linspace(a, b, each + 1) for a, b in pairwise(np.unique(ends))])
@@ -111,7 +121,7 @@ def misses(piece: Pcurve, curve: Curve, surface: Surface, ts: Array) -> Array:
 
 
 def _second(
-    pcurve: Pcurve, flat: NurbsCurve | None, curve: Curve, surface: Surface, t: Interval
+    pcurve: Pcurve, flat: Parts | None, curve: Curve, surface: Surface, t: Interval
 ) -> Array:
     """(n,) bounds of |g''| over spans of the parameter."""
     u, v = _parameters(pcurve, flat, t)
@@ -124,12 +134,12 @@ def _second(
 
 
 def _parameters(
-    pcurve: Pcurve, flat: NurbsCurve | None, t: Interval
+    pcurve: Pcurve, flat: Parts | None, t: Interval
 ) -> tuple[list[Interval], list[Interval]]:
     """(u, u', u'') and (v, v', v'') over spans of the parameter."""
     if flat is not None:
-        jets = flat.jets_over(t)
-        return [jets[0, k] for k in range(3)], [jets[1, k] for k in range(3)]
+        jets = curve_nets(flat.blocks, flat.breaks, t).jets()
+        return [jets[0, k] for k in (0, 1, 3)], [jets[1, k] for k in (0, 1, 3)]
     one, zero = interval(np.ones_like(t.lo)), interval(np.zeros_like(t.lo))
     c, s = cos(t), sin(t)
     lines = [(t, zero, one), (one, zero, zero), (zero, zero, zero)]
