@@ -36,7 +36,7 @@ MOST_OPEN = 2048
 
 
 class Parts(NamedTuple):
-    """The Bezier parts (m, p + 1, 4) of a trimming curve, in z = 0, and where they end, (m + 1,)."""
+    """The Bezier parts (m, p + 1, 4) of a trimming curve, in z = 0, and (m + 1,) their ends."""
 
     blocks: Array
     breaks: Array
