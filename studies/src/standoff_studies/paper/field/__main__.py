@@ -9,7 +9,8 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(
         prog="python -m standoff_studies.paper.field",
         description="Run the methods of the field on the motions of simulations A to E and on "
-        "drawn pairs, and print the rows as JSON. All of it takes a quarter of an hour.",
+        "drawn pairs, and print the rows as JSON. All of it takes three quarters of an hour, most "
+        "of it interval Newton on the drawn pairs.",
     )
     parser.add_argument("--pairs", type=int, default=FULL.pairs, help="drawn pairs (default 1000)")
     parser.add_argument(

@@ -65,11 +65,11 @@ class Size(NamedTuple):
     frames: int
     starts: int
     pairs: int
-    boxes: int = 250
+    boxes: int = 1000
 
 
 FULL = Size(evenly=20, switches=20, frames=4, starts=40, pairs=1000)
-"""The committed study: a quarter of an hour of one core."""
+"""The committed study: three quarters of an hour of one core, most of it interval Newton."""
 
 
 def works(size: Size) -> Iterator[Work]:
