@@ -84,7 +84,8 @@ def test_a_drilled_seam_shows_each_point_once(kind: str, tmp_path: Path) -> None
     for chart in charts.values():
         u0, u1 = chart.rectangle[:2]
         assert not chart.surface.periodic or u1 - u0 <= 2.0 * np.pi + 1e-9
-        leaves = face_leaves(boundary, chart, pieces, part.report.size)
+        own = [k for k, piece in enumerate(pieces) if piece.chart == chart.number]
+        leaves = face_leaves(boundary, chart, pieces, own, part.report.size)
         rows = [leaf.reals[:4] for leaf in leaves]
         areas[chart.face] += leaf_area(boundary, chart, rows, [leaf.cut for leaf in leaves])
     own = [face_area(boundary, k, part.report.size) for k in range(len(areas))]

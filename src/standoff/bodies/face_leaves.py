@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import TILE, chart_row, surface_of
 from standoff.bodies.tolerances import BOX_REACH
-from standoff.geometry.bernstein import segments
+from standoff.geometry.bernstein import equal_segments
 from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
 from standoff.geometry.surfaces import Surface
@@ -108,12 +107,14 @@ def _borders(boundary: PackedParts, number: int) -> tuple[Array, Array]:
     """(low, high), each (m, 2), of boxes around parts of a chart's trimming curves."""
     row = chart_row(boundary, number)
     first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-    boxes = [b for k in range(first, first + count) for b in _coedge_boxes(boundary, k, PARTS)]
-    return np.reshape([b[0] for b in boxes], (-1, 2)), np.reshape([b[1] for b in boxes], (-1, 2))
+    boxes = [_coedge_boxes(boundary, k, PARTS) for k in range(first, first + count)]
+    if not boxes:
+        return np.empty((0, 2)), np.empty((0, 2))
+    return np.concatenate([b[0] for b in boxes]), np.concatenate([b[1] for b in boxes])
 
 
-def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tuple[Array, Array]]:
-    """(low, high), each (2,), around parts of a packed trimming curve."""
+def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> tuple[Array, Array]:
+    """(low, high), each (n, 2), around parts of a packed trimming curve."""
     row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * number
     at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
     first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
@@ -121,18 +122,9 @@ def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> Iterator[tu
     if kind == L.BEZIER:
         count = 3 * (int(boundary.reals[at]) + 1)
         points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-        for part in _equal_parts(len(points) - 1, parts) @ points:
-            yield bezier_box(part)
-        return
+        return bezier_box(equal_segments(len(points) - 1, parts) @ points)
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
-    yield from zip(*pcurve_boxes(kind, matrix, np.linspace(first, last, parts + 1)), strict=True)
-
-
-@cache
-def _equal_parts(degree: int, count: int) -> Array:
-    """(count, n, n) matrices to the coefficients on equal parts of [0, 1]."""
-    ends = np.linspace(0.0, 1.0, count + 1)
-    return segments(degree, ends[:-1], ends[1:])
+    return pcurve_boxes(kind, matrix, np.linspace(first, last, parts + 1))
 
 
 def leaves_of(boundary: PackedParts, faces: Sequence[int] | None, widest: float) -> Leaves:

@@ -196,7 +196,7 @@ def _along(
 
 
 def _points(c: Coedge) -> Array:
-    return np.array([c.pcurve.point(float(t))[:2] for t in np.linspace(c.first, c.last, ALONG)])
+    return c.pcurve.places(np.linspace(c.first, c.last, ALONG))
 
 
 def _encircled(chart: Chart, coedges: Sequence[Coedge], spots: Sequence[Array]) -> float:

@@ -25,11 +25,13 @@ from standoff.bodies.tolerances import (
     SMALLEST_PART,
 )
 from standoff.errors import BodyError
-from standoff.geometry.bernstein import segments
+from standoff.geometry.bernstein import equal_segments, segments
 from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
 from standoff.geometry.torus import full_turn
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+
+Boxes = tuple[Array, Array]
 
 PERIOD = 2.0 * np.pi
 # Points of a trimming curve between which it crosses a line of constant u at most once, and parts
@@ -53,15 +55,17 @@ def in_one_period(chart: Chart) -> None:
 
 
 def _cut(chart: Chart) -> None:
-    ranges = [_range(c, 0) for c in chart.coedges]
+    boxes = [_boxes(c, c.first, c.last) for c in chart.coedges]
+    ranges = [(float(lows[:, 0].min()), float(highs[:, 0].max())) for lows, highs in boxes]
     low, high = min(r[0] for r in ranges), max(r[1] for r in ranges)
     if high - low > PERIOD + PERIOD_ROUNDOFF:
         low = _start(chart.coedges, ranges)
         high = low + PERIOD
         chart.coedges = [part for c in chart.coedges for part in _parts(c, low)]
+        boxes = [_boxes(c, c.first, c.last) for c in chart.coedges]
     chart.period = 0.5 * (low + high) - 0.5 * PERIOD
-    for c in chart.coedges:
-        if not _proven(c, 0, chart.period, chart.period + PERIOD, PERIOD_ROUNDOFF):
+    for c, around in zip(chart.coedges, boxes, strict=True):
+        if not _proven(c, around, 0, chart.period, chart.period + PERIOD, PERIOD_ROUNDOFF):
             raise BodyError(
                 f"Face {chart.face}: a trimming curve leaves the period of u that begins at "
                 f"{chart.period:.9g}: cut the face along a line of constant u.",
@@ -76,17 +80,19 @@ def _in_domain(chart: Chart, k: int) -> None:
     if whole or not chart.coedges or not np.isfinite([low, high]).any():
         return
     angle = chart.surface.angles[k] and np.isfinite([low, high]).all()
-    ranges = [_range(c, k) for c in chart.coedges]
-    least, most = min(r[0] for r in ranges), max(r[1] for r in ranges)
+    boxes = [_boxes(c, c.first, c.last) for c in chart.coedges]
+    least = min(float(lows[:, k].min()) for lows, _ in boxes)
+    most = max(float(highs[:, k].max()) for _, highs in boxes)
     way = PERIOD * round(0.5 * (low + high - least - most) / PERIOD) if angle else 0.0
     if way != 0.0:
         for c in chart.coedges:
             c.pcurve = c.pcurve.turned(way, k)
+        boxes = [_boxes(c, c.first, c.last) for c in chart.coedges]
         if k == 0 and chart.period is not None:
             chart.period += way
     room = DOMAIN_SPARE * (high - low if np.isfinite(high - low) else most - least)
-    for c in chart.coedges:
-        if not _proven(c, k, low, high, room):
+    for c, around in zip(chart.coedges, boxes, strict=True):
+        if not _proven(c, around, k, low, high, room):
             raise BodyError(
                 f"Face {chart.face}: a trimming curve, {'uv'[k]} from {least:.9g} to {most:.9g} "
                 f"with the others, leaves the surface's domain from {low:.9g} to {high:.9g}: give "
@@ -104,36 +110,33 @@ def is_rim(c: Coedge) -> bool:
     return bool(abs(slope) == 1.0 and rise == 0.0 and last.tolist() == [0.0, 0.0, 1.0])
 
 
-def _boxes(c: Coedge, k: int, first: float, last: float) -> tuple[Array, Array]:
-    """(low, high), each (PARTS,), of u (k = 0) or v along equal parts of a coedge."""
+def _boxes(c: Coedge, first: float, last: float) -> Boxes:
+    """(low, high), each (PARTS, 2), of (u, v) along equal parts of a coedge's range."""
     ends = np.linspace(first, last, PARTS + 1)
     if c.pcurve.kind != L.BEZIER:
-        low, high = pcurve_boxes(c.pcurve.kind, c.pcurve.matrix, ends)
-        return low[:, k], high[:, k]
+        return pcurve_boxes(c.pcurve.kind, c.pcurve.matrix, ends)
     points = c.pcurve.matrix
+    if (first, last) == (c.first, c.last):
+        return bezier_box(equal_segments(len(points) - 1, PARTS) @ points)
     shares = (ends - c.first) / (c.last - c.first)
-    low, high = bezier_box(segments(len(points) - 1, shares[:-1], shares[1:]) @ points)
-    return low[:, k], high[:, k]
+    return bezier_box(segments(len(points) - 1, shares[:-1], shares[1:]) @ points)
 
 
-def _range(c: Coedge, k: int) -> tuple[float, float]:
-    low, high = _boxes(c, k, c.first, c.last)
-    return float(low.min()), float(high.max())
-
-
-def _proven(c: Coedge, k: int, low: float, high: float, room: float) -> bool:
-    """Is u (k = 0) or v between bounds but for `room`, all along a coedge?"""
+def _proven(c: Coedge, boxes: Boxes, k: int, low: float, high: float, room: float) -> bool:
+    """Is u (k = 0) or v between bounds but for `room`, all along a coedge? `boxes` are those of all
+    of it."""
     low, high = low - room, high + room
-    waiting = [(c.first, c.last)]
+    waiting = [(c.first, c.last, boxes)]
     least = SMALLEST_PART * (c.last - c.first)
     while waiting:
-        first, last = waiting.pop()
-        lows, highs = _boxes(c, k, first, last)
-        steps = np.linspace(first, last, PARTS + 1)
-        out = np.flatnonzero((lows < low) | (highs > high))
-        if len(out) and last - first < least:
+        first, last, (lows, highs) = waiting.pop()
+        out = np.flatnonzero((lows[:, k] < low) | (highs[:, k] > high))
+        if not len(out):
+            continue
+        if last - first < least:
             return False
-        waiting += [(float(steps[k]), float(steps[k + 1])) for k in out]
+        steps = np.linspace(first, last, PARTS + 1)
+        waiting += [(a, b, _boxes(c, a, b)) for a, b in steps[[out, out + 1]].T.tolist()]
     return True
 
 

@@ -80,13 +80,14 @@ def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
     frame = np.column_stack([surface.linear[:, :2], surface.shift])
     if isinstance(pcurve, NurbsPcurve) and isinstance(curve, NurbsCurve):
         w = pcurve.matrix[:, 2:]
-        if len(w) != len(curve.control_points) or np.any(pcurve.knots != curve.knots):
+        alike = (pcurve.knots, curve.knots), (w[:, 0], curve.weights)
+        if not all(np.array_equal(one, other) for one, other in alike):
             return None
         flat = np.column_stack([pcurve.matrix[:, :2] / w, np.ones(len(w))])
         off = np.linalg.norm(flat @ frame.T - curve.control_points, axis=1)
         return float(off.max())
-    alike = (L.LINE, Line), (L.CONIC, ConicArc)
-    if not any(pcurve.kind == kind and isinstance(curve, own) for kind, own in alike):
+    kinds = (L.LINE, Line), (L.CONIC, ConicArc)
+    if not any(pcurve.kind == kind and isinstance(curve, own) for kind, own in kinds):
         return None
     if not np.array_equal(pcurve.matrix[2], AFFINE):
         return None

@@ -45,6 +45,7 @@ from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.validation import Array
+from standoff.kernels.body import layout as L
 from standoff.wording import counted
 
 if TYPE_CHECKING:
@@ -240,7 +241,8 @@ def _edge_misses(face: Face, pieces: Pieces, size: float) -> Iterator[float]:
     surface = face.charts[0]
     for entry, (number, _) in enumerate(face.loop):
         curve = pieces.edges[number].curve
-        if len(face.charts) > 1:
+        exact = not face.pcurves or face.pcurves[entry] is None
+        if surface.kind == L.SPHERE and exact:
             yield sphere_bound(curve, surface)
         else:
             pcurve = loop_pcurve(face, entry, pieces.edges, surface)

@@ -22,7 +22,6 @@ from standoff.cad.curves import (
     basis_of,
     breaks_of,
     interpolated,
-    radii,
     spline_of,
 )
 from standoff.cad.miss_bounds import misses
@@ -201,15 +200,8 @@ def of_file(geometry: Any, edge: Converted, on: Carrier) -> Pcurve | None:
         start, way = coordinates(flat.Location()), coordinates(flat.Direction())
         way = linear @ way / edge.scale
         return _line(on.own(start[None])[0] - way * edge.shift, way)
-    if kind in ("Geom2d_Circle", "Geom2d_Ellipse") and edge.scale == 1.0:
-        at = flat.Position()
-        a, b = radii(flat, kind)
-        x, y = linear @ coordinates(at.XDirection()) * a, linear @ coordinates(at.YDirection()) * b
-        c, s = np.cos(edge.shift), np.sin(edge.shift)
-        turned = c * x - s * y, s * x + c * y
-        middle = on.own(coordinates(at.Location())[None])[0]
-        rows = [[turned[0][k], turned[1][k], middle[k]] for k in (0, 1)]
-        return Pcurve(L.CONIC, np.array([*rows, [0.0, 0.0, 1.0]]))
+    if kind in ("Geom2d_Circle", "Geom2d_Ellipse"):
+        return _lowered(flat, edge, on)
     if kind in ("Geom2d_BSplineCurve", "Geom2d_BezierCurve"):
         first, last = edge.own(np.array([edge.curve.first, edge.curve.last]))
         if flat.Degree() > GREATEST_DEGREE:
@@ -261,7 +253,7 @@ def _over(knots: Array, curve: Curve) -> Array:
 
 
 def _lowered(flat: Any, edge: Converted, on: Carrier) -> Pcurve:
-    """A spline of lower degree near the file's trimming curve."""
+    """A spline near the file's trimming curve, of a degree that the kernels have."""
 
     def places(ts: Array) -> Array:
         return on.own(np.array([coordinates(flat.Value(float(t))) for t in edge.own(ts)]))

@@ -142,6 +142,13 @@ def segments(degree: int, first: Array, last: Array) -> Array:
     return matrices
 
 
+@cache
+def equal_segments(degree: int, count: int) -> Array:
+    """The same, (count, n, n), on equal parts of [0, 1]."""
+    ends = np.linspace(0.0, 1.0, count + 1)
+    return segments(degree, ends[:-1], ends[1:])
+
+
 def _each_basis(degree: int, t: Array) -> list[Array]:
     """Values (m, d + 1) of the Bernstein polynomials of each degree d at t (m,) in [0, 1], by sums
     of numbers that are not negative."""

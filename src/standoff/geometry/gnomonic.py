@@ -75,12 +75,9 @@ def ellipsoid_bounds(surface: Surface, boxes: Boxes) -> PatchBounds:
     values.
     """
     extents = ellipsoid_extents(surface, boxes, np.eye(3)[..., None])
-    one = np.ones(len(boxes))
-    spots = [np.stack([u, v, one]) for u, v in corners(boxes)]
-    axis, angle = cone_round(
-        mapped(cofactors(surface.linear), by_generator([interval(x) for x in spots]))
-    )
-    middle = np.stack([*boxes.middle.T, one])
+    axis, angle = ellipsoid_cones(surface, boxes)
+    spots = _spots(boxes)
+    middle = np.stack([*boxes.middle.T, np.ones(len(boxes))])
     middle = middle / np.linalg.norm(middle, axis=0)
     turn = np.max([between(middle, x) for x in spots], axis=0)
     chord = 2.0 * np.sin(0.5 * np.minimum(turn, np.pi)) * (1.0 + LENGTH_ROUNDING)
@@ -92,6 +89,17 @@ def ellipsoid_bounds(surface: Surface, boxes: Boxes) -> PatchBounds:
     held = interval(a) * b * c / (normal * Interval(low.lo, high.hi) ** 2)
     signed = -held if np.linalg.det(surface.linear) > 0.0 else held
     return PatchBounds(*widened(extents), axis, angle, signed.lo, signed.hi)
+
+
+def ellipsoid_cones(surface: Surface, boxes: Boxes) -> tuple[Array, Array]:
+    """(axis (n, 3), angle (n,)) of cones around the normals alone."""
+    generators = by_generator([interval(x) for x in _spots(boxes)])
+    return cone_round(mapped(cofactors(surface.linear), generators))
+
+
+def _spots(boxes: Boxes) -> list[Array]:
+    """(3, n) directions of each corner of the boxes."""
+    return [np.stack([u, v, np.ones(len(boxes))]) for u, v in corners(boxes)]
 
 
 def _near(size: Array, chord: Array, least: float, most: float) -> Interval:

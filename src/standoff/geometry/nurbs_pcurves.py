@@ -107,13 +107,9 @@ class NurbsPcurve(Pcurve):
         return found
 
     def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
-        found: list[tuple[Pcurve, float, float]] = []
-        for span in self.spans:
-            a = max(first, span.first)
-            b = min(last, span.last)
-            if a < b:
-                found += [(p, p.first, p.last) for p in _turning_pieces(_part(span, a, b))]
-        return found
+        within = [(s, max(first, s.first), min(last, s.last)) for s in self.spans]
+        parts = [_part(span, a, b) for span, a, b in within if a < b]
+        return [(p, p.first, p.last) for p in _turning_pieces(parts)]
 
 
 def _part(span: BezierPcurve, a: float, b: float) -> BezierPcurve:
@@ -136,50 +132,68 @@ def _split(points: Array, s: float) -> tuple[Array, Array]:
     return np.array(left), np.array(right[::-1])
 
 
-def _turning_pieces(piece: BezierPcurve) -> list[BezierPcurve]:
-    """Cut at inflections, then until each part turns by less than 180 degrees."""
-    first, last = piece.first, piece.last
-
-    def bend(t: float) -> float:
-        return float(np.linalg.det(np.array(piece.homogeneous(t))))
-
-    ts = np.linspace(first, last, 16 * len(piece.matrix))
-    rows = piece.homogeneous_at(ts)
+def _turning_pieces(parts: list[BezierPcurve]) -> list[BezierPcurve]:
+    """Parts of one degree cut at inflections, then until each turns by less than 180 degrees."""
+    if not parts:
+        return []
+    ends = np.array([(part.first, part.last) for part in parts])
+    ts, rows = _sampled(parts, ends, 16 * len(parts[0].matrix))
     bends = np.linalg.det(rows)
-    bends[np.abs(bends) <= _bend_roundoff(piece, rows)] = 0.0
-    bends[np.abs(bends) <= STRAIGHT_PCURVE * np.abs(bends).max(initial=0.0)] = 0.0
-    cuts = [
-        float(scipy.optimize.brentq(bend, ts[k], ts[k + 1], xtol=INFLECTION))
-        for k in range(len(ts) - 1)
-        if bends[k] * bends[k + 1] < 0.0
-    ]
-    parts = [_part(piece, a, b) for a, b in pairwise([first, *cuts, last]) if a < b]
-    return [q for p in parts for q in _halved(p)]
+    bends[np.abs(bends) <= _bend_roundoff(parts, ends, rows)] = 0.0
+    greatest = np.abs(bends).max(axis=1, keepdims=True)
+    bends[np.abs(bends) <= STRAIGHT_PCURVE * greatest] = 0.0
+    inflected = bends[:, :-1] * bends[:, 1:] < 0.0
+    found = []
+    for part, (first, last), times, where in zip(parts, ends.tolist(), ts, inflected, strict=True):
+        if not where.any():
+            found.append(part)
+            continue
+        cuts = [_inflection(part, *times[k : k + 2]) for k in np.flatnonzero(where)]
+        found += [_part(part, a, b) for a, b in pairwise([first, *cuts, last]) if a < b]
+    return _halved(found)
 
 
-def _bend_roundoff(piece: BezierPcurve, rows: Array) -> Array:
-    """(n,) roundoff of the determinants of homogeneous jets (n, 3, 3): that of the derivatives is a
-    share of what control points of this size may have, however straight the curve is."""
-    degree, width = len(piece.matrix) - 1, piece.last - piece.first
-    first = degree / width * float(np.abs(piece.matrix).max())
-    second = degree / width * first
-    h, ht, htt = np.linalg.norm(rows, axis=2).T
+def _sampled(parts: list[BezierPcurve], ends: Array, count: int) -> tuple[Array, Array]:
+    """(m, count) parameters along m parts, and the homogeneous jets (m, count, 3, 3) there."""
+    ts = np.linspace(ends[:, 0], ends[:, 1], count, axis=1)
+    return ts, np.array([part.homogeneous_at(t) for part, t in zip(parts, ts, strict=True)])
+
+
+def _inflection(part: BezierPcurve, before: float, after: float) -> float:
+    def bend(t: float) -> float:
+        return float(np.linalg.det(np.array(part.homogeneous(t))))
+
+    return float(scipy.optimize.brentq(bend, before, after, xtol=INFLECTION))
+
+
+def _bend_roundoff(parts: list[BezierPcurve], ends: Array, rows: Array) -> Array:
+    """(m, n) roundoff of the determinants of homogeneous jets (m, n, 3, 3): that of the derivatives
+    is a share of what control points of this size may have, however straight the curve is."""
+    rate = (len(parts[0].matrix) - 1) / (ends[:, 1] - ends[:, 0])
+    first = rate * np.abs([part.matrix for part in parts]).max(axis=(1, 2))
+    first, second = first[:, None], (rate * first)[:, None]
+    h, ht, htt = np.moveaxis(np.linalg.norm(rows, axis=3), 2, 0)
     return np.asarray(INFLECTION_ROUNDOFF * h * (ht * second + first * htt))
 
 
-def _halved(piece: BezierPcurve, halvings: int = 0) -> list[BezierPcurve]:
-    first, last = piece.first, piece.last
-    h, ht, _ = np.moveaxis(piece.homogeneous_at(np.linspace(first, last, TURN_POINTS)), 1, 0)
-    ways = (ht[:, :2] - ht[:, 2:] * h[:, :2] / h[:, 2:]) / h[:, 2:]
-    turns = np.diff(np.arctan2(ways[:, 1], ways[:, 0]))
-    total = float(np.abs((turns + np.pi) % (2.0 * np.pi) - np.pi).sum())
-    if total < MOST_TURN:
-        return [piece]
-    middle = 0.5 * (first + last)
-    if halvings == PIECE_HALVINGS:
-        raise StandoffError(
-            f"The trimming curve turns back on itself at its parameter {middle:.9g}: give one "
-            "without a cusp."
-        )
-    halves = (_part(piece, first, middle), _part(piece, middle, last))
-    return [q for half in halves for q in _halved(half, halvings + 1)]
+def _halved(parts: list[BezierPcurve], halvings: int = 0) -> list[BezierPcurve]:
+    """Parts halved until each turns by less than `MOST_TURN`."""
+    ends = np.array([(part.first, part.last) for part in parts])
+    h, ht, _ = np.moveaxis(_sampled(parts, ends, TURN_POINTS)[1], 2, 0)
+    ways = (ht[..., :2] - ht[..., 2:] * h[..., :2] / h[..., 2:]) / h[..., 2:]
+    turns = np.diff(np.arctan2(ways[..., 1], ways[..., 0]), axis=1)
+    total = np.abs((turns + np.pi) % (2.0 * np.pi) - np.pi).sum(axis=1)
+    found = []
+    for part, turn in zip(parts, total, strict=True):
+        if turn < MOST_TURN:
+            found.append(part)
+            continue
+        middle = 0.5 * (part.first + part.last)
+        if halvings == PIECE_HALVINGS:
+            raise StandoffError(
+                f"The trimming curve turns back on itself at its parameter {middle:.9g}: give one "
+                "without a cusp."
+            )
+        halves = [_part(part, part.first, middle), _part(part, middle, part.last)]
+        found += _halved(halves, halvings + 1)
+    return found

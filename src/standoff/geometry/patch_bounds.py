@@ -20,6 +20,7 @@ from standoff.geometry.interval_vectors import cross, length
 from standoff.geometry.intervals import Interval, interval, sqrt
 from standoff.geometry.tolerances import CONE_ROUNDING, VANISHED
 from standoff.geometry.validation import Array
+from standoff.geometry.vectors import crosses
 
 # Steps of a cone's axis towards the vector farthest from it.
 AXIS_STEPS = 40
@@ -87,8 +88,8 @@ class PatchBounds:
 
 def between(a: Array, b: Array) -> Array:
     """Angles, radians, between vectors (3, ...), to an absolute roundoff of a few eps."""
-    across = np.linalg.norm(np.cross(a, b, axis=0), axis=0)
-    return np.asarray(np.arctan2(across, (a * b).sum(axis=0)))
+    across = crosses(np.moveaxis(a, 0, -1), np.moveaxis(b, 0, -1))
+    return np.asarray(np.arctan2(np.linalg.norm(across, axis=-1), (a * b).sum(axis=0)))
 
 
 def _known(angle: Array) -> Array:

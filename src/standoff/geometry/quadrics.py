@@ -170,8 +170,9 @@ class Sphere(Surface):
 
     def cones_over(self, boxes: Boxes) -> tuple[Array, Array]:
         """Those of `bounds_over`, which knows more than the jets."""
-        found = self.bounds_over(boxes)
-        return found.axis, found.angle
+        from standoff.geometry.gnomonic import ellipsoid_cones
+
+        return ellipsoid_cones(self, boxes)
 
 
 class Cylinder(Rotational):

@@ -22,6 +22,7 @@ from standoff.bodies.tessellation import chart_row, surface_of
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
+from standoff.geometry.vectors import crosses
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_places, surface_jets
 
@@ -47,13 +48,14 @@ class Chart:
         kind, at = int(row[L.CHART_KIND]), int(row[L.CHART_REALS])
         jets = np.empty((u.size, 18))
         surface_jets(reals, kind, at, np.column_stack([u.ravel(), v.ravel()]), jets)
-        x, xu, xv, xuu, xuv, xvv = np.moveaxis(jets.reshape(*u.shape, 6, 3), -2, 0)
+        jets = jets.reshape(*u.shape, 6, 3)
+        x, xu, xv, xuu, xuv, xvv = (jets[..., k, :] for k in range(6))
         outward, radius = float(reals[at + L.OUTWARD]), self.frame.radius
-        areas = outward * np.cross(xu, xv)
+        areas = outward * crosses(xu, xv)
         if radius > 0.0:
             slopes = (
-                outward * (np.cross(xuu, xv) + np.cross(xu, xuv)),
-                outward * (np.cross(xuv, xv) + np.cross(xu, xvv)),
+                outward * (crosses(xuu, xv) + crosses(xu, xuv)),
+                outward * (crosses(xuv, xv) + crosses(xu, xvv)),
             )
             normals, moved = offset_areas((xu, xv), areas, slopes, radius)
             x, areas = x + radius * normals, outward * moved

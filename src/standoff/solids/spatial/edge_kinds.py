@@ -23,6 +23,7 @@ from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.patch_bounds import between
 from standoff.geometry.roundness import round_arc
 from standoff.geometry.validation import Array
+from standoff.geometry.vectors import crosses
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, coedge_parameters
 from standoff.kernels.solids.torus_potential import AXIS_OF, CENTRE_OF, CONE_OF, TORUS_THROUGH
@@ -52,11 +53,14 @@ def proven_kinds(
     """Of each edge, what is proven of all its points; None where only samples decide."""
     sides = _sides(boundary)
     found: list[EdgeKind | None] = [None] * boundary.n_edges
+    of_edge: dict[int, list[Piece]] = {}
+    for piece in pieces:
+        of_edge.setdefault(piece.edge, []).append(piece)
     asked: dict[int, list[Range]] = {}
     for k, edge in enumerate(boundary.edge_parts):
         if len(sides[k]) != 2:
             continue
-        found[k] = _constant(boundary, charts, pieces, sides[k], k)
+        found[k] = _constant(boundary, charts, of_edge.get(k, []), sides[k], k)
         if found[k] is None:
             asked[k] = list(edge_ranges(edge.curve, FIRST_ARC, boundary.size))
     told: dict[int, set[EdgeKind]] = {k: set() for k in asked}
@@ -142,7 +146,7 @@ def _kind(n: Array, m: Array, t: Array, angles: tuple[Any, Any, float]) -> EdgeK
     n, m = n[:, :, None], m[:, None, :]
     if (between(n, m) + angles[0] + angles[1] + TURN_ROUNDING <= SMOOTH_ANGLE).all():
         return EdgeKind.SMOOTH
-    sine = np.einsum("i...,i->...", np.cross(n, m, axis=0), t)
+    sine = crosses(np.moveaxis(n, 0, -1), np.moveaxis(m, 0, -1)) @ t
     spare = sum(2.0 * np.sin(0.5 * np.minimum(angle, np.pi)) for angle in angles) + TURN_ROUNDING
     if (np.abs(sine) <= spare).any() or (sine > 0.0).any() != (sine > 0.0).all():
         return None
@@ -157,9 +161,9 @@ def _constant(
     edge: int,
 ) -> EdgeKind | None:
     """The kind of an edge that has the same turn all along: none between parts of one surface, that
-    of one place around an arc whose faces are turned about its axis. None of others."""
-    of_edge = [piece for piece in pieces if piece.edge == edge]
-    by_side = [[p for p in of_edge if charts[p.chart].face == side.face] for side in sides]
+    of one place around an arc whose faces are turned about its axis. None of others. `pieces` are
+    the edge's."""
+    by_side = [[p for p in pieces if charts[p.chart].face == side.face] for side in sides]
     if not all(by_side):
         return None
     ones, others = ({p.chart for p in own} for own in by_side)
@@ -168,7 +172,7 @@ def _constant(
     curve = boundary.edge_parts[edge].curve
     if not (isinstance(curve, ConicArc) and round_arc(curve, ROUND_KIND)):
         return None
-    if not all(_turned_about(charts[p.chart], curve, boundary.size) for p in of_edge):
+    if not all(_turned_about(charts[k], curve, boundary.size) for k in ones | others):
         return None
     normals = []
     middle = 0.5 * (curve.first + curve.last)

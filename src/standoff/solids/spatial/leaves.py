@@ -66,10 +66,9 @@ class Leaf(KeepsReadOnly):
 
 
 def face_leaves(
-    boundary: PackedParts, chart: FaceChart, pieces: list[Piece], size: float
+    boundary: PackedParts, chart: FaceChart, pieces: list[Piece], own: list[int], size: float
 ) -> list[Leaf]:
-    """The leaves of one chart; pieces: of its trimming curves."""
-    own = [k for k, piece in enumerate(pieces) if piece.chart == chart.number]
+    """The leaves of one chart; own: the numbers of its trimming curves' pieces."""
     natural = natural_of(chart)
     found: list[Leaf] = []
     waiting = _started(chart)
@@ -309,13 +308,12 @@ def edge_cones(
 ) -> dict[int, list[Cone]]:
     """(axis, half angle) of a cone round both faces' normals along each part of each edge."""
     around = face_cones(charts, pieces, ranges)
-    return {
-        edge: [
-            _cone_round([cone for own in around.get((edge, k), {}).values() for cone in own])
-            for k in range(len(parts))
-        ]
-        for edge, parts in ranges.items()
-    }
+    keys = [(edge, k) for edge, parts in ranges.items() for k in range(len(parts))]
+    groups = [[cone for own in around.get(key, {}).values() for cone in own] for key in keys]
+    found: dict[int, list[Cone]] = {edge: [] for edge in ranges}
+    for (edge, _), cone in zip(keys, _cones_round(groups), strict=True):
+        found[edge].append(cone)
+    return found
 
 
 def _normal_cones(chart: FaceChart, rows: Array) -> list[Cone]:
@@ -327,18 +325,20 @@ def _normal_cones(chart: FaceChart, rows: Array) -> list[Cone]:
     return [(chart.outward * axis, float(angle)) for axis, angle in zip(axes, angles, strict=True)]
 
 
-def _cone_round(cones: list[Cone]) -> Cone:
-    """A cone around some; one of the half angle `UNKNOWN` where that would be too wide."""
-    nothing = np.array([0.0, 0.0, 1.0]), UNKNOWN
-    if not cones or max(angle for _, angle in cones) >= UNKNOWN:
-        return nothing
-    axis = np.sum([axis for axis, _ in cones], axis=0)
-    scale = np.linalg.norm(axis)
-    if scale <= NO_AXIS:
-        return nothing
-    axis = axis / scale
-    wide = max(float(between(axis, other)) + angle for other, angle in cones) + SMOOTH_JOIN
-    return axis, wide if wide < 0.5 * np.pi else UNKNOWN
+def _cones_round(groups: list[list[Cone]]) -> list[Cone]:
+    """A cone around each group of some; of the half angle `UNKNOWN` where it would be too wide."""
+    owners = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
+    axes = np.reshape([axis for group in groups for axis, _ in group], (-1, 3))
+    angles = np.array([angle for group in groups for _, angle in group])
+    total = np.zeros((len(groups), 3))
+    np.add.at(total, owners, axes)
+    scale = np.linalg.norm(total, axis=1, keepdims=True)
+    known = scale > NO_AXIS
+    axis = np.where(known, total / np.where(known, scale, 1.0), [0.0, 0.0, 1.0])
+    wide = np.where(known[:, 0], 0.0, UNKNOWN)
+    np.maximum.at(wide, owners, between(axis[owners].T, axes.T) + angles)
+    wide = np.where(wide + SMOOTH_JOIN < 0.5 * np.pi, wide + SMOOTH_JOIN, UNKNOWN)
+    return list(zip(axis, wide.tolist(), strict=True))
 
 
 def vertex_leaf(boundary: PackedParts, number: int) -> Leaf:

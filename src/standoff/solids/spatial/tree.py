@@ -44,17 +44,22 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, 
     samples decide."""
     charts = {c.number: c for c in face_charts(boundary)}
     pieces = pieces_of(boundary, charts)
-    size = boundary.size
+    own: dict[int, list[int]] = {number: [] for number in charts}
+    for k, piece in enumerate(pieces):
+        own[piece.chart].append(k)
     found = [
-        leaf for chart in charts.values() for leaf in face_leaves(boundary, chart, pieces, size)
+        leaf
+        for number, chart in charts.items()
+        for leaf in face_leaves(boundary, chart, pieces, own[number], boundary.size)
     ]
     put_screws(found, charts)
     sampled = sampled_edges(proven_kinds(boundary, charts, pieces), boundary.edge_kinds)
     ranges = {k: parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
     cones = edge_cones(charts, pieces, ranges)
     round_faces = {}
+    natural = {number: natural_of(chart) for number, chart in charts.items()}
     for piece in pieces:
-        kind, record = natural_of(charts[piece.chart])
+        kind, record = natural[piece.chart]
         if kind > TORUS_THROUGH:
             round_faces[piece.edge] = kind, record
     for number, parts in ranges.items():
