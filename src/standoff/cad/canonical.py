@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.cad.surfaces import Carrier, carrier
+from standoff.cad.tolerances import SAME_NORMALS
 from standoff.geometry.bernstein import product
 from standoff.geometry.curves import FULL_TURN
 from standoff.geometry.nurbs import NurbsSurface
@@ -24,8 +25,6 @@ from standoff.kernels.entries.queries import surface_jets
 
 # Samples of each part of a spline along u and along v.
 SHARES = np.array([0.1, 0.4, 0.7])
-# Of unit normals: below this they have one direction, or lie in one plane (dimensionless).
-SAME_NORMALS = 1e-6
 
 
 class Likeness(NamedTuple):

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE
+from standoff.cad.tolerances import BOUND_FLOOR, BOUND_SHARE, REMAINDER
 from standoff.geometry.bernstein import basis, equal_segments, segments
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
@@ -34,8 +34,6 @@ from standoff.kernels.body import layout as L
 # Chebyshev points for each degree: the bound is above the greatest value there by 8 % at most.
 POINTS = 4
 BETWEEN = 1.0 / np.cos(0.5 * np.pi / POINTS)
-# Of what is within BOUND_FLOOR: what Taylor polynomials leave.
-REMAINDER = 1e-3
 # Greatest degree, how often a range is halved, and how many are open, at most.
 MOST_DEGREE, MOST_HALVINGS, MOST_OPEN = 80, 16, 1024
 # Bezier patches that one range may meet.

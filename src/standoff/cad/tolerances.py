@@ -32,9 +32,17 @@ BOUND_FLOOR: Final = 3e-10
 """Fraction of the part's size below which the bound of a trimming curve's miss is not sharpened: a
 third of what parts may miss each other by; half of it costs a quarter more time."""
 
+REMAINDER: Final = 1e-3
+"""Fraction of BOUND_FLOOR that Taylor polynomials of sines may leave: it joins the bound, and a
+smaller one costs a higher degree."""
+
 RECOGNISED: Final = 1e-9
 """Fraction of the part's size within which a spline has to be a plane, cylinder or cone to be taken
 for it: what parts may miss each other by anyway. What it is off by joins the slack."""
+
+SAME_NORMALS: Final = 1e-6
+"""Of unit normals of a spline: below this they have one direction, or lie in one plane
+(dimensionless). It tells what to try only; a bound proves it."""
 
 SPHERE_DEPTH: Final = 0.15
 """Cosine from the middle of a sphere's face beyond which its trimming curves are not fitted in one
