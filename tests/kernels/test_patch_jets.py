@@ -107,6 +107,7 @@ def test_surface_jets(name):
             knots_u, knots_v = ([0.6], []) if name.startswith("extrusion") else ([], [0.6])
         u, v = inside(u0, u1, knots_u, rng), inside(v0, v1, knots_v, rng)
         assert_surface_law(surface, u, v, np.abs(surface.jet(u, v)).max())
+        np.testing.assert_array_equal(surface.points(np.array([[u, v]])), surface.jet(u, v)[:1])
 
 
 def curves(rng):
@@ -137,6 +138,9 @@ def test_curve_jets(name):
         t = inside(curve.first, curve.last, knots, rng)
         x, xt, xtt = curve.jet(t)
         np.testing.assert_allclose(x, linear @ given.point(t) + shift, atol=1e-12)
+        np.testing.assert_array_equal(
+            curve.points(np.array([t, curve.first])), [x, curve.point(curve.first)]
+        )
         scale = np.abs(curve.jet(t)).max()
         assert_derivative(xt, difference(lambda s, c=curve: c.jet(s)[0], t), scale)
         assert_derivative(xtt, difference(lambda s, c=curve: c.jet(s)[1], t), scale)
