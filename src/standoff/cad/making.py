@@ -122,7 +122,10 @@ def _made(
     near = FILE_AREA * found.volume + found.slack * found.area
     area, notes = _checked_areas(boundary, pieces, size)
     if pieces.recognised:
-        kinds = ", ".join(counted(n, kind) for kind, n in pieces.recognised.items())
+        plural = {"torus": "tori"}
+        kinds = ", ".join(
+            counted(n, kind, plural.get(kind)) for kind, n in sorted(pieces.recognised.items())
+        )
         notes = (*notes, f"of its splines these are others within {pieces.moved:.2g}: {kinds}")
     volume, room = judged(solid, "volume", found.volume, near)
     if abs(found.volume - volume) > room:
