@@ -124,7 +124,7 @@ def _made(
     if pieces.recognised:
         plural = {"torus": "tori"}
         kinds = ", ".join(
-            counted(n, kind, plural.get(kind)) for kind, n in sorted(pieces.recognised.items())
+            counted(n, kind, plural.get(kind, "")) for kind, n in sorted(pieces.recognised.items())
         )
         notes = (*notes, f"of its splines these are others within {pieces.moved:.2g}: {kinds}")
     volume, room = judged(solid, "volume", found.volume, near)
