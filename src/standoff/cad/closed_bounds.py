@@ -45,7 +45,8 @@ def closed_bound(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None
             _away(pcurve, curve, surface, curve.first + k * 0.5 * np.pi) for k in range(3)
         )
         c = 0.5 * (at + half)
-        return _norms(c, 0.5 * (at - half), quarter - c)
+        reach = 0.5 * (curve.last - curve.first)
+        return _turning(0.5 * (at - half), quarter - c, c, reach, reach)
     return None
 
 
@@ -71,8 +72,13 @@ def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
     return surface.jet(u, v)[0] - curve.point(t)
 
 
-def _norms(*vectors: Array) -> float:
-    return float(sum(np.linalg.norm(vector) for vector in vectors))
+def _turning(a: Array, b: Array, c: Array, half: float, middle: float) -> float:
+    """A bound of |a cos t + b sin t + c| within `half` of the middle, radians."""
+    cosine, sine = np.cos(middle), np.sin(middle)
+    a, b = a * cosine + b * sine, b * cosine - a * sine
+    fall, rise = 1.0 - np.cos(min(half, np.pi)), np.sin(min(half, 0.5 * np.pi))
+    there, one, other, always = (float(np.linalg.norm(x)) for x in (a + c, a, b, c))
+    return min(there + fall * one + rise * other, one + other + always)
 
 
 def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
@@ -94,4 +100,4 @@ def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
     away = frame @ pcurve.matrix - curve.basis()
     if isinstance(curve, Line):
         return float(max(np.linalg.norm(away @ [t, 0.0, 1.0]) for t in (curve.first, curve.last)))
-    return _norms(*away.T)
+    return _turning(*away.T, 0.5 * (curve.last - curve.first), 0.5 * (curve.first + curve.last))
