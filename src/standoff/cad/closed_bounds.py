@@ -74,11 +74,12 @@ def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
 
 def _turning(a: Array, b: Array, c: Array, half: float, middle: float) -> float:
     """A bound of |a cos t + b sin t + c| within `half` of the middle, radians."""
+    whole = sum(float(np.linalg.norm(x)) for x in (a, b, c))
     cosine, sine = np.cos(middle), np.sin(middle)
     a, b = a * cosine + b * sine, b * cosine - a * sine
     fall, rise = 1.0 - np.cos(min(half, np.pi)), np.sin(min(half, 0.5 * np.pi))
-    there, one, other, always = (float(np.linalg.norm(x)) for x in (a + c, a, b, c))
-    return min(there + fall * one + rise * other, one + other + always)
+    there, one, other = (float(np.linalg.norm(x)) for x in (a + c, a, b))
+    return min(there + fall * one + rise * other, whole)
 
 
 def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
