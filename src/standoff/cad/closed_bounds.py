@@ -101,4 +101,5 @@ def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
     away = frame @ pcurve.matrix - curve.basis()
     if isinstance(curve, Line):
         return float(max(np.linalg.norm(away @ [t, 0.0, 1.0]) for t in (curve.first, curve.last)))
-    return _turning(*away.T, 0.5 * (curve.last - curve.first), 0.5 * (curve.first + curve.last))
+    a, b, c = away.T
+    return _turning(a, b, c, 0.5 * (curve.last - curve.first), 0.5 * (curve.first + curve.last))
