@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import scipy
+from scipy.optimize import elementwise
 
 from standoff.bodies.tolerances import DOMAIN_SPARE
 from standoff.cad.curves import (
@@ -150,7 +150,10 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
         surface_jets(surface.reals, surface.kind, 0, np.ascontiguousarray(at), jets)
         away, xu, xv = points - jets[:, :3], jets[:, 3:6], jets[:, 6:9]
         off = np.linalg.norm(away, axis=1)
-        best = np.where((off < least)[:, None], at, best)
+        nearer = off < least
+        if not nearer.any():
+            break
+        best = np.where(nearer[:, None], at, best)
         least = np.minimum(off, least)
         metric = [np.sum(a * b, axis=1) for a, b in ((xu, xu), (xu, xv), (xv, xv))]
         slopes = [np.sum(a * away, axis=1) for a in (xu, xv)]
@@ -334,14 +337,16 @@ def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
     for k, levels in enumerate(surface.analytic_breaks()):
         for level in np.asarray(levels).tolist():
             side = uv[:, k] - level
-            for m in np.flatnonzero(side[1:] * side[:-1] < 0.0).tolist():
+            at = np.flatnonzero(side[1:] * side[:-1] < 0.0)
 
-                def away(t: float, k: int = k, level: float = level) -> float:
-                    return float(places(np.array([t]))[0, k]) - level
+            def away(t: Array, k: int = k, level: float = level) -> Array:
+                order = np.argsort(t)
+                return np.asarray(places(t[order])[np.argsort(order), k] - level)
 
-                if away(ts[m]) * away(ts[m + 1]) < 0.0:
-                    t = float(scipy.optimize.brentq(away, ts[m], ts[m + 1]))
-                    found += [t] if curve.first + near < t < curve.last - near else []
+            roots = elementwise.find_root(away, (ts[at], ts[at + 1])) if len(at) else None
+            if roots is not None:
+                inside = (curve.first + near < roots.x) & (roots.x < curve.last - near)
+                found += roots.x[roots.success & inside].tolist()
     return found
 
 
