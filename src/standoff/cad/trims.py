@@ -334,19 +334,23 @@ def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
     own = curve.spans()
     found = own[1:-1].tolist() if len(own) <= FEW_SPANS else []
     uv = places(ts)
+    brackets: list[Array] = []
     for k, levels in enumerate(surface.analytic_breaks()):
         for level in np.asarray(levels).tolist():
             side = uv[:, k] - level
             at = np.flatnonzero(side[1:] * side[:-1] < 0.0)
+            brackets += [np.array([ts[m], ts[m + 1], k, level]) for m in at]
 
-            def away(t: Array, k: int = k, level: float = level) -> Array:
-                order = np.argsort(t)
-                return np.asarray(places(t[order])[np.argsort(order), k] - level)
+    def away(t: Array, k: Array, level: Array) -> Array:
+        order = np.argsort(t)
+        uv = places(t[order])[np.argsort(order)]
+        return np.where(k == 0, uv[:, 0], uv[:, 1]) - level
 
-            roots = elementwise.find_root(away, (ts[at], ts[at + 1])) if len(at) else None
-            if roots is not None:
-                inside = (curve.first + near < roots.x) & (roots.x < curve.last - near)
-                found += roots.x[roots.success & inside].tolist()
+    if brackets:
+        low, high, axis, level = np.array(brackets).T
+        roots = elementwise.find_root(away, (low, high), args=(axis, level))
+        inside = (curve.first + near < roots.x) & (roots.x < curve.last - near)
+        found += roots.x[roots.success & inside].tolist()
     return found
 
 
