@@ -19,6 +19,7 @@ from standoff.geometry.series import Series, power
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
+from standoff.geometry.tolerances import SAME_WEIGHTS
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.solids.spatial.tolerances import DERIVATIVE_INFLATION
@@ -109,14 +110,29 @@ def _nurbs(surface: Surface, rows: Array) -> Array:
 
 def _of_nets(nets: CutNets, linear: Array, orders: Sequence[tuple[int, int]]) -> Array:
     """(n, k - 1) bounds of derivatives of k orders, the lowest first, from the nets of the
-    homogeneous ones, by Leibniz's rule for x w."""
+    homogeneous ones, by Leibniz's rule for x w; of polynomials, the longest of their nets."""
+    found = np.zeros((len(nets.h), len(orders) - 1))
+    if nets.polynomial:
+        w, most = abs(float(nets.h.flat[3])), float(np.linalg.norm(linear, 2))
+        points = nets.h[..., :3] - nets.h[..., :3].mean(axis=(1, 2), keepdims=True)
+        degrees = [size - 1 for size in nets.h.shape[1:3]]
+        # weights that are 1 up to roundoff move a point of the net by this
+        uneven = SAME_WEIGHTS * np.linalg.norm(points, axis=3).max(axis=(1, 2))
+        for k, order in enumerate(orders[1:]):
+            net, moved = nets.net(*order), most * uneven
+            rows = np.tensordot(linear, net.middle[:3], 1)
+            off = most * np.linalg.norm(net.radius[:3], axis=0)
+            found[:, k] = (np.linalg.norm(rows, axis=0) + off).max(axis=(1, 2))
+            for degree, width, times in zip(degrees, nets.widths, order, strict=True):
+                moved = moved * (2.0 * degree / width) ** times
+            found[:, k] = (found[:, k] + moved) / w
+        return np.where(np.isfinite(found), found, np.inf)
     centre = interval(nets.points.middle.mean(axis=1)[:, None])
     h, w = {}, {}
     for order in orders:
         net = _row(nets.net(*order))
         h[order], w[order] = _hull(net[:3] - centre * net[3]), _hull(net[3])
     x = {(0, 0): _hull(nets.points - centre)}
-    found = np.zeros((len(nets.h), len(orders) - 1))
     for k, (a, b) in enumerate(orders[1:]):
         total = h[a, b]
         for i, j in orders:
