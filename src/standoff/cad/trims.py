@@ -330,7 +330,6 @@ def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
     """Where a curve's parameters are not smooth: at its own knots if they are few, as with many it
     is smooth enough, and where it crosses those of a surface."""
     ts = np.unique([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
-    near = SAME_KNOT * (curve.last - curve.first)
     own = curve.spans()
     found = own[1:-1].tolist() if len(own) <= FEW_SPANS else []
     uv = places(ts)
@@ -349,9 +348,19 @@ def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
     if brackets:
         low, high, axis, level = np.array(brackets).T
         roots = elementwise.find_root(away, (low, high), args=(axis, level))
-        inside = (curve.first + near < roots.x) & (roots.x < curve.last - near)
-        found += roots.x[roots.success & inside].tolist()
-    return found
+        found += roots.x[roots.success].tolist()
+    return _apart(found, curve.first, curve.last)
+
+
+def _apart(ts: list[float], first: float, last: float) -> list[float]:
+    """Ascending parameters between two, without those that are another one or an end but for
+    rounding, as where a curve crosses a corner of knots."""
+    near = SAME_KNOT * (last - first)
+    found = [first]
+    for t in sorted(ts):
+        if found[-1] + near < t < last - near:
+            found.append(t)
+    return found[1:]
 
 
 def _at_pole(on: Carrier, uv: Array) -> bool:
