@@ -21,11 +21,15 @@ PARTS = Path(__file__).resolve().parents[3] / "shared" / "parts"
 
 def bent_box(by: float) -> Any:
     """A box of 10 x 10 x 10 with one edge that leaves both of its faces, by a length at most."""
+    shape = made.box(10, 10, 10)
+    return bent(shape, made.explored(shape, "edge")[0], by)
+
+
+def bent(shape: Any, edge: Any, by: float) -> Any:
+    """A shape one of whose straight edges is bent away from (5, 5, 5), by a length at most."""
     from OCP.BRep import BRep_Builder, BRep_Tool
     from OCP.gp import gp_Pnt
 
-    shape = made.box(10, 10, 10)
-    edge = made.explored(shape, "edge")[0]
     curve = BRep_Tool.Curve_s(edge, 0.0, 0.0)
     first, last = BRep_Tool.Range_s(edge)
     ends = [np.array(p.Coord()) for p in (curve.Value(first), curve.Value(last))]
@@ -36,6 +40,24 @@ def bent_box(by: float) -> Any:
     bend = spline([gp_Pnt(*p.tolist()) for p in points], first, last)
     BRep_Builder().UpdateEdge(edge, bend, 1e-7)
     return shape
+
+
+def _ends(edge: Any) -> set[tuple[int, ...]]:
+    ends = [made._point(vertex) for vertex in made.explored(edge, "vertex")]
+    return {tuple(round(x) for x in end) for end in ends}
+
+
+def test_faces_that_share_a_vertex_do_not_cross_there() -> None:
+    """A boss beside a plate reaches above it: its round face and the plate's top meet in two
+    points. The slack of a bent edge elsewhere makes what counts as near wider than these are."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+
+    boss = made.turned_cylinder((5.0, -1.8, 8.75), (0.0, 1.0, 0.0), 1.7, 1.8)
+    shape = BRepAlgoAPI_Fuse(made.box(10, 10, 10), boss).Shape()
+    edge = next(e for e in made.explored(shape, "edge") if _ends(e) == {(0, 10, 0), (10, 10, 0)})
+    report = so.cad.from_shape(bent(shape, edge, 2e-3), tolerance=0.01)[0].report
+    assert report.slack > 1e-3
+    assert not any("crosses" in line for line in report.self_intersections)
 
 
 def spline(points: list[Any], first: float, last: float, flat: bool = False) -> Any:
