@@ -271,3 +271,41 @@ def test_a_file_that_nobody_here_made_loads(name: str) -> None:
         assert part.report.slack <= FILES[name]
         assert part.report.slack <= part.report.allowed
         assert "=>" not in part.name
+
+
+def test_the_parameter_along_a_collapsed_side_stays() -> None:
+    """Points beside a patch with a side that is one point, whose feet would go to its far end."""
+    from types import SimpleNamespace
+
+    from standoff.cad.trims import feet
+    from standoff.geometry import BezierPatch
+
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.0, 4), indexing="ij")
+    net = np.stack([u * (1.0 - v), v, 0.1 * v**2], axis=-1)
+    on = SimpleNamespace(surface=BezierPatch(net), angles=np.array([False, False]))
+    near = np.array([[0.0, 1.0 - away] for away in (0.0, 1e-12, 1e-9, 0.5)])
+    points = on.surface.points(near) + np.array([1e-3, 0.0, 0.0])
+    found = feet(on, points, near)
+    np.testing.assert_allclose(found[:3, 0], 0.0, atol=1e-12)
+    assert found[3, 0] == pytest.approx(2e-3, rel=1e-3)
+
+
+def test_a_curve_through_a_corner_of_knots_crosses_them_once() -> None:
+    from standoff.cad.trims import _crossed
+    from standoff.geometry.curves import Line
+    from standoff.geometry.nurbs import NurbsSurface
+
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 3), indexing="ij")
+    knots = [0.0, 0.0, 0.3, 1.0, 1.0]
+    at = np.array([0.0, 0.3, 1.0])
+    bent = np.zeros((3, 3))
+    bent[1, 1] = 0.1
+    net = np.stack([at[:, None] + 0.0 * v, at[None] + 0.0 * u, bent], axis=-1)
+    surface = NurbsSurface(net, knots, knots)
+    line = Line([0.0, 0.0, 0.0], [1.0, 1.0, 0.0])
+
+    def places(ts: np.ndarray) -> np.ndarray:
+        return np.stack([ts, ts * (1.0 + 1e-15)], axis=1) / line.last
+
+    found = _crossed(places, line, surface)
+    np.testing.assert_allclose(found, [0.3 * line.last], rtol=1e-12)

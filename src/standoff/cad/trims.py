@@ -143,6 +143,7 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
     by Newton's method. Where it gets no nearer, they stay."""
     surface = on.surface
     low, high = limits_of(on)
+    ranges = np.where(np.isfinite(high - low), high - low, 1.0)
     at, best = np.clip(near, low, high), near
     least = np.full(len(points), np.inf)
     for _ in range(FEET_STEPS):
@@ -159,11 +160,14 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
         slopes = [np.sum(a * away, axis=1) for a in (xu, xv)]
         area = metric[0] * metric[2] - metric[1] ** 2
         area = np.where(area > SAME_TANGENTS * metric[0] * metric[2], area, np.inf)
+        # at a collapsed side the parameter along it is none of the point's: it stays
+        speeds = np.sqrt(metric[0]) * ranges[0], np.sqrt(metric[2]) * ranges[1]
+        moves = [speeds[k] > AT_POLE * speeds[1 - k] for k in (0, 1)]
         step = [
             (metric[2] * slopes[0] - metric[1] * slopes[1]) / area,
             (metric[0] * slopes[1] - metric[1] * slopes[0]) / area,
         ]
-        at = np.clip(at + np.stack(step, axis=1), low, high)
+        at = np.clip(at + np.stack(step, axis=1) * np.stack(moves, axis=1), low, high)
     return np.asarray(best)
 
 
@@ -384,6 +388,11 @@ def _fitted(
 
 
 def miss(pcurve: Pcurve, curve: Curve, surface: Surface) -> float:
-    """The greatest distance, at samples, of a trimming curve's image from its edge."""
-    ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
+    """The greatest distance, at samples between all knots, of a trimming curve's image from its
+    edge."""
+    ends = np.asarray(curve.spans())
+    if isinstance(pcurve, NurbsPcurve):
+        inside = (curve.first < pcurve.knots) & (pcurve.knots < curve.last)
+        ends = np.unique(np.concatenate([ends, pcurve.knots[inside]]))
+    ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(ends)])
     return float(misses(pcurve, curve, surface, ts).max())
