@@ -19,7 +19,12 @@ from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.jet_bounds import JetBounds, widened
 from standoff.geometry.patch_bounds import PatchBounds, cone_round
-from standoff.geometry.tolerances import CONE_ROUNDING, NET_ROUNDING, SAME_WEIGHTS, SPAN_ROUNDING
+from standoff.geometry.tolerances import (
+    CONE_ROUNDING,
+    NET_ROUNDING,
+    POLYNOMIAL_WEIGHTS,
+    SPAN_ROUNDING,
+)
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import net_cones
 
@@ -114,7 +119,7 @@ class CutNets:
         """Are all weights one number, but for the roundoff of inserted knots? What that moves, the
         spare for rounding covers."""
         w = self.h[..., 3]
-        return bool(np.ptp(w) <= SAME_WEIGHTS * np.abs(w).max())
+        return bool(np.ptp(w) <= POLYNOMIAL_WEIGHTS * np.abs(w).max())
 
     def normal_cones(self) -> tuple[Array, Array]:
         """(axis (n, 3), angle (n,)) of cones around x_u × x_v, angle pi where none is known."""
