@@ -26,6 +26,9 @@ SAFETY = 8.0
 # A cell this narrow, as a fraction of its original rectangle, is not refined further.
 NARROWEST_CELL = 2.0**-40
 
+# Points that a boundary of many cells may use for each, some ten times as many as at first.
+CELL_NODES = 500
+
 Integrand = Callable[[Array, Array], Array]
 """Parameters (m,) and (n,) to values (m, n, columns) on their grid."""
 
@@ -156,9 +159,10 @@ def integrate(
     tolerance : float
         Relative to these scales.
     most : int
-        About the greatest number of points to use. What is reached by then is the answer, and its
-        remainder says how accurate it is.
+        About the greatest number of points to use, or `CELL_NODES` for each cell if that is more.
+        What is reached by then is the answer, and its remainder says how accurate it is.
     """
+    most = max(most, CELL_NODES * len(cells))
     found = [(cell, evaluated(cell)) for cell in cells]
     nodes = sum(_count(cell) for cell in cells)
     while nodes < most:
