@@ -21,11 +21,15 @@ PARTS = Path(__file__).resolve().parents[3] / "shared" / "parts"
 
 def bent_box(by: float) -> Any:
     """A box of 10 x 10 x 10 with one edge that leaves both of its faces, by a length at most."""
+    shape = made.box(10, 10, 10)
+    return bent(shape, made.explored(shape, "edge")[0], by)
+
+
+def bent(shape: Any, edge: Any, by: float) -> Any:
+    """A shape one of whose straight edges is bent away from (5, 5, 5), by a length at most."""
     from OCP.BRep import BRep_Builder, BRep_Tool
     from OCP.gp import gp_Pnt
 
-    shape = made.box(10, 10, 10)
-    edge = made.explored(shape, "edge")[0]
     curve = BRep_Tool.Curve_s(edge, 0.0, 0.0)
     first, last = BRep_Tool.Range_s(edge)
     ends = [np.array(p.Coord()) for p in (curve.Value(first), curve.Value(last))]
@@ -36,6 +40,24 @@ def bent_box(by: float) -> Any:
     bend = spline([gp_Pnt(*p.tolist()) for p in points], first, last)
     BRep_Builder().UpdateEdge(edge, bend, 1e-7)
     return shape
+
+
+def _ends(edge: Any) -> set[tuple[int, ...]]:
+    ends = [made._point(vertex) for vertex in made.explored(edge, "vertex")]
+    return {tuple(round(x) for x in end) for end in ends}
+
+
+def test_faces_that_share_a_vertex_do_not_cross_there() -> None:
+    """A boss beside a plate reaches above it: its round face and the plate's top meet in two
+    points. The slack of a bent edge elsewhere makes what counts as near wider than these are."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+
+    boss = made.turned_cylinder((5.0, -1.8, 8.75), (0.0, 1.0, 0.0), 1.7, 1.8)
+    shape = BRepAlgoAPI_Fuse(made.box(10, 10, 10), boss).Shape()
+    edge = next(e for e in made.explored(shape, "edge") if _ends(e) == {(0, 10, 0), (10, 10, 0)})
+    report = so.cad.from_shape(bent(shape, edge, 2e-3), tolerance=0.01)[0].report
+    assert report.slack > 1e-3
+    assert not any("crosses" in line for line in report.self_intersections)
 
 
 def spline(points: list[Any], first: float, last: float, flat: bool = False) -> Any:
@@ -249,3 +271,41 @@ def test_a_file_that_nobody_here_made_loads(name: str) -> None:
         assert part.report.slack <= FILES[name]
         assert part.report.slack <= part.report.allowed
         assert "=>" not in part.name
+
+
+def test_the_parameter_along_a_collapsed_side_stays() -> None:
+    """Points beside a patch with a side that is one point, whose feet would go to its far end."""
+    from types import SimpleNamespace
+
+    from standoff.cad.trims import feet
+    from standoff.geometry import BezierPatch
+
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 4), np.linspace(0.0, 1.0, 4), indexing="ij")
+    net = np.stack([u * (1.0 - v), v, 0.1 * v**2], axis=-1)
+    on = SimpleNamespace(surface=BezierPatch(net), angles=np.array([False, False]))
+    near = np.array([[0.0, 1.0 - away] for away in (0.0, 1e-12, 1e-9, 0.5)])
+    points = on.surface.points(near) + np.array([1e-3, 0.0, 0.0])
+    found = feet(on, points, near)
+    np.testing.assert_allclose(found[:3, 0], 0.0, atol=1e-12)
+    assert found[3, 0] == pytest.approx(2e-3, rel=1e-3)
+
+
+def test_a_curve_through_a_corner_of_knots_crosses_them_once() -> None:
+    from standoff.cad.trims import _crossed
+    from standoff.geometry.curves import Line
+    from standoff.geometry.nurbs import NurbsSurface
+
+    u, v = np.meshgrid(np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 3), indexing="ij")
+    knots = [0.0, 0.0, 0.3, 1.0, 1.0]
+    at = np.array([0.0, 0.3, 1.0])
+    bent = np.zeros((3, 3))
+    bent[1, 1] = 0.1
+    net = np.stack([at[:, None] + 0.0 * v, at[None] + 0.0 * u, bent], axis=-1)
+    surface = NurbsSurface(net, knots, knots)
+    line = Line([0.0, 0.0, 0.0], [1.0, 1.0, 0.0])
+
+    def places(ts: np.ndarray) -> np.ndarray:
+        return np.stack([ts, ts * (1.0 + 1e-15)], axis=1) / line.last
+
+    found = _crossed(places, line, surface)
+    np.testing.assert_allclose(found, [0.3 * line.last], rtol=1e-12)

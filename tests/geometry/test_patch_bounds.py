@@ -58,14 +58,49 @@ def excess(bounds: PatchBounds, surface: Any, rectangle: np.ndarray) -> tuple[fl
 
 @pytest.mark.parametrize("name", KINDS)
 def test_cones_alone_are_those_of_all_bounds(name: str) -> None:
+    """Those of nets are found from the normals' nets alone, and are no wider by much."""
     for seed, width in ((3, 0.05), (4, 0.7)):
         surface, _ = drawn(name, seed, width)
         rng = np.random.default_rng(seed)
         rectangles = np.array([part(KINDS[name].domain, width, rng) for _ in range(4)])
         whole = surface.bounds(rectangles)
         axis, angle = surface.normal_cones(rectangles)
-        np.testing.assert_array_equal(axis, whole.axis)
-        np.testing.assert_array_equal(angle, whole.angle)
+        if name in ("bezier", "nurbs"):
+            assert (angle <= 1.05 * whole.angle).all()
+            for k, rectangle in enumerate(rectangles):
+                normals = sampled(surface, rectangle).normals.T
+                away = between(np.broadcast_to(axis[k][:, None], normals.shape), normals)
+                assert away.max() <= angle[k] + ROUNDED
+        else:
+            np.testing.assert_array_equal(axis, whole.axis)
+            np.testing.assert_array_equal(angle, whole.angle)
+
+
+@settings(max_examples=draws(60))
+@given(SEEDS, st.integers(1, 5), st.integers(1, 5), st.sampled_from([1.0, 0.1, 1e-3, 1e-6]))
+def test_cones_of_polynomial_nets_hold_all_normals(seed: int, p: int, q: int, width: float) -> None:
+    """Of bent nets, also far from the origin, some with a side that is one point."""
+    rng = np.random.default_rng(seed)
+    grid = np.stack(np.meshgrid(np.arange(p + 1.0), np.arange(q + 1.0), indexing="ij"), axis=-1)
+    net = np.concatenate([grid, np.zeros((p + 1, q + 1, 1))], axis=2)
+    net = net + rng.uniform(0.0, 0.45) * rng.normal(size=net.shape)
+    collapsed = rng.uniform() < 0.3
+    if collapsed:
+        net[0] = net[0].mean(axis=0)
+    far = rng.choice([0.0, 1e3])
+    surface = g.BezierPatch(net + far * rng.normal(size=3))
+    u, v = rng.uniform(0.0, 1.0 - width, 2) * [0.0 if collapsed else 1.0, 1.0]
+    rectangle = np.array([u, u + width, v, v + width])
+    axis, angle = (found[0] for found in surface.normal_cones(rectangle))
+    if angle > 0.5 * np.pi:
+        return
+    spots = rng.uniform(size=(40, 2))
+    spots[:4] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
+    exact = g.BezierPatch(net)  # the same normals, without the rounding of what is far away
+    for s, t in spots if not collapsed else spots[np.abs(spots[:, 0]) > 1e-3]:
+        jet = exact.jet(u + s * width, v + t * width)
+        normal = np.cross(jet[1], jet[2])
+        assert between(axis, normal / np.linalg.norm(normal)) <= angle + ROUNDED + 1e-12 * far
 
 
 def test_every_class_of_surface_is_here() -> None:

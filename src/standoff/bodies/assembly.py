@@ -5,20 +5,21 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from standoff.bodies.charts import edge_points, make_charts, surface_normal
+from standoff.bodies.enclosed import Enclosed, all_flat, enclosed_by, enclosed_by_planes
 from standoff.bodies.orientation import chart_at, orient
 from standoff.bodies.packed_parts import packed_parts
 from standoff.bodies.packing import Assembled, Chart, Sector
 from standoff.bodies.tolerances import (
     JOIN_TOLERANCE,
-    SIGN_OF_VOLUME,
     SINGULAR_CORNER,
+    VOLUME_END,
     WIDE_ANGLE,
     coordinate_roundoff,
 )
@@ -43,7 +44,8 @@ class Joined:
     """An oriented boundary.
 
     notes : what was turned; residual : the greatest distance between parts that were joined,
-    length; tolerance : what it was allowed to be, length; shells, claims : as in ``Oriented``.
+    length; tolerance : what it was allowed to be, length; shells, claims : as in ``Oriented``;
+    enclosed : what shells enclose, where it was found to turn them, by their faces.
     """
 
     parts: Assembled
@@ -52,6 +54,7 @@ class Joined:
     tolerance: float
     shells: list[list[int]]
     claims: list[int]
+    enclosed: dict[tuple[int, ...], Enclosed] = field(default_factory=dict)
 
 
 def _check_joins(vertices: Array, edges: Sequence[Edge], size: float, tolerance: float) -> float:
@@ -291,7 +294,8 @@ def assemble(
     miss = _check_joins(vertices, edges, size, tolerance)
     charts = make_charts(faces, edges)
     parts = Assembled(dimension, vertices, edges, faces, charts)
-    found = orient(charts, faces, edges, _volume(parts), senses, trusted)
+    enclosed: dict[tuple[int, ...], Enclosed] = {}
+    found = orient(charts, faces, edges, _volume(parts, enclosed), senses, trusted)
     parts = replace(parts, smooth=found.smooth)
     if roundoff > JOIN_TOLERANCE * size > 0.0:
         found.notes.append(roundoff_note(roundoff))
@@ -301,7 +305,7 @@ def assemble(
     if dimension == 2:
         right, cones = _planar_geometry(vertices, edges)
         parts = replace(parts, outward_right=right, cones=cones)
-    return Joined(parts, found.notes, miss, tolerance, found.shells, found.claims)
+    return Joined(parts, found.notes, miss, tolerance, found.shells, found.claims, enclosed)
 
 
 def roundoff_note(roundoff: float) -> str:
@@ -312,15 +316,18 @@ def roundoff_note(roundoff: float) -> str:
     )
 
 
-def _volume(parts: Assembled) -> Callable[[Sequence[int]], float]:
-    """The volume that a shell encloses, as its charts face at the time of the call."""
+def _volume(
+    parts: Assembled, kept: dict[tuple[int, ...], Enclosed]
+) -> Callable[[Sequence[int]], float]:
+    """The volume that a shell encloses, as its charts face at the time of the call; what is found
+    as accurately as a boundary tells it is kept."""
 
     def volume(shell: Sequence[int]) -> float:
-        from standoff.bodies.enclosed import all_flat, enclosed_by, enclosed_by_planes
-
         if all_flat(parts, shell):
             return enclosed_by_planes(parts, shell).settled
-        return enclosed_by(packed_parts(parts), shell, SIGN_OF_VOLUME).settled
+        found = enclosed_by(packed_parts(parts), shell, VOLUME_END)
+        kept[tuple(sorted(shell))] = found
+        return found.settled
 
     return volume
 

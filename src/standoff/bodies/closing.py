@@ -65,7 +65,7 @@ def close(joined: Joined) -> tuple[Assembled, Ints, Array, BoundaryReport]:
     if blind:
         parts = without_charts(parts, blind)
         rough = packed_parts(parts)
-    shells = [enclosed_by(rough, shell, VOLUME_END) for shell in joined.shells]
+    shells = [_enclosed(joined, rough, shell) for shell in joined.shells]
     for shell, found in zip(joined.shells, shells, strict=True):
         _check_volume(shell, found, joined.tolerance)
     cavities = _cavities(rough, joined, shells)
@@ -98,6 +98,14 @@ def close(joined: Joined) -> tuple[Assembled, Ints, Array, BoundaryReport]:
         notes=tuple(joined.notes),
     )
     return parts, ints, reals, report
+
+
+def _enclosed(joined: Joined, rough: PackedParts, shell: Sequence[int]) -> Enclosed:
+    """What a shell encloses that faces outward: as before it was turned, but for the sign."""
+    found = joined.enclosed.get(tuple(shell))
+    if found is None:
+        return enclosed_by(rough, shell, VOLUME_END)
+    return replace(found, volume=abs(found.volume))
 
 
 def _named(faces: Sequence[int]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -29,11 +29,13 @@ MOST_NODES = 200_000
 @dataclass(frozen=True)
 class Enclosed:
     """What a shell encloses: its signed volume, length cubed, a bound on the error of that, and its
-    area, length squared."""
+    area, length squared; of each face, where they are known, its area and how far that may be off.
+    """
 
     volume: float
     error: float
     area: float
+    areas: dict[int, tuple[float, float]] = field(default_factory=dict)
 
     @property
     def settled(self) -> float:
@@ -50,7 +52,7 @@ def enclosed_by(boundary: PackedParts, shell: Sequence[int], tolerance: float) -
     away = np.linalg.norm(points - centre, axis=1).max(initial=0.0)
     reach = float(away) or max(reaches)
     frame = Frame(centre, reach, 0.0)
-    cells = [cell for i in shell for cell in face_cells(boundary, i, frame)]
+    cells = [replace(cell, owner=i) for i in shell for cell in face_cells(boundary, i, frame)]
 
     def scale(values: Array) -> Array:
         sizes = np.full(COLUMNS, np.inf)
@@ -63,6 +65,10 @@ def enclosed_by(boundary: PackedParts, shell: Sequence[int], tolerance: float) -
         float(found.values[VOLUME]) * reach**3,
         (float(found.remainder[VOLUME]) + rounding) * reach**3,
         float(found.values[AREA]) * reach**2,
+        {
+            i: (float(a[AREA]) * reach**2, float(b[AREA]) * reach**2)
+            for i, (a, b) in found.of.items()
+        },
     )
 
 

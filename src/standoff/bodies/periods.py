@@ -31,8 +31,6 @@ from standoff.geometry.torus import full_turn
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 
-Boxes = tuple[Array, Array]
-
 PERIOD = 2.0 * np.pi
 # Points of a trimming curve between which it crosses a line of constant u at most once, and parts
 # of it with boxes of their own.
@@ -110,7 +108,7 @@ def is_rim(c: Coedge) -> bool:
     return bool(abs(slope) == 1.0 and rise == 0.0 and last.tolist() == [0.0, 0.0, 1.0])
 
 
-def _boxes(c: Coedge, first: float, last: float) -> Boxes:
+def _boxes(c: Coedge, first: float, last: float) -> tuple[Array, Array]:
     """(low, high), each (PARTS, 2), of (u, v) along equal parts of a coedge's range."""
     ends = np.linspace(first, last, PARTS + 1)
     if c.pcurve.kind != L.BEZIER:
@@ -122,7 +120,9 @@ def _boxes(c: Coedge, first: float, last: float) -> Boxes:
     return bezier_box(segments(len(points) - 1, shares[:-1], shares[1:]) @ points)
 
 
-def _proven(c: Coedge, boxes: Boxes, k: int, low: float, high: float, room: float) -> bool:
+def _proven(
+    c: Coedge, boxes: tuple[Array, Array], k: int, low: float, high: float, room: float
+) -> bool:
     """Is u (k = 0) or v between bounds but for `room`, all along a coedge? `boxes` are those of all
     of it."""
     low, high = low - room, high + room

@@ -72,9 +72,6 @@ CROSSING_STEP: Final = 1e-14
 LEAF_MARGIN: Final = 1e-9
 """A crossing may lie outside its rectangle by this fraction of the sides: it may be found twice."""
 
-SIGN_OF_VOLUME: Final = 1e-2
-"""Relative tolerance of a volume of which only the sign is needed."""
-
 VOLUME_ROUNDINGS: Final = 64.0
 """Roundings (eps of the sum of the parts' magnitudes) by which an enclosed volume may be wrong."""
 

@@ -1,9 +1,10 @@
-"""Splines that are planes, cylinders or cones: recognised, with a proven bound of how far they are.
+"""Splines that are planes, cylinders, cones, spheres or tori, lines or circles: recognised, with a
+proven bound of how far they are.
 
 Many files have nothing but splines. One that is a cylinder is told by samples of its points and
 normals. What proves it is a polynomial over each of its Bezier parts: the square of the distance
 from the axis, less that of the radius. Its coefficients bound it, and so how far the spline is from
-the cylinder; cones and planes alike. Exact lengths, areas and trims then are those of the other.
+the cylinder; the others alike. Exact lengths, areas and trims then are those of the other.
 """
 
 from __future__ import annotations
@@ -14,28 +15,38 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from standoff.cad.curves import Converted
 from standoff.cad.surfaces import Carrier, carrier
 from standoff.cad.tolerances import SAME_NORMALS
 from standoff.geometry.bernstein import product
-from standoff.geometry.curves import FULL_TURN
+from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.tolerances import NET_ROUNDING
+from standoff.geometry.nurbs_curves import NurbsCurve
+from standoff.geometry.tolerances import NET_ROUNDING, WHOLE_CONIC
 from standoff.geometry.validation import Array
+from standoff.geometry.vectors import crosses
 from standoff.kernels.entries.queries import surface_jets
 
 # Samples of each part of a spline along u and along v.
-SHARES = np.array([0.1, 0.4, 0.7])
+SHARES = np.array([0.05, 0.4, 0.7, 0.95])
+# Points of each part of a spline curve.
+CURVE_SAMPLES = 7
+# Greatest turn round a torus's tube, radians.
+MOST_ROUND = 1.8 * np.pi
+UP = np.array([0.0, 0.0, 1.0])
 
 
 class Likeness(NamedTuple):
     """A surface of OpenCASCADE that a spline is, over which of its parameters, and how far at most.
 
-    A spline that turned out to be another kind is as far as inf.
+    A spline that turned out to be another kind is as far as inf; one whose normals point into its
+    sphere has the way -1.
     """
 
     geometry: Any
     over: tuple[float, float, float, float]
     off: float
+    way: int = 1
 
 
 class Samples(NamedTuple):
@@ -47,15 +58,31 @@ class Samples(NamedTuple):
     net: Array
 
 
-def recognised(on: Carrier, most: float) -> Carrier | None:
-    """A spline's carrier as that of the plane, cylinder or cone that it is within `most`, length;
-    None if it is none."""
+def recognised(on: Carrier, most: float) -> tuple[Carrier, Likeness] | None:
+    """A spline's carrier as that of the plane, cylinder, cone, sphere or torus that it is within
+    `most`, length; None if it is none."""
     samples = _samples(on.surface)
     for find in FINDERS:
         found = find(samples)
         if found is not None and found.off + on.moved <= most:
-            return replace(carrier(found.geometry, found.over), moved=found.off + on.moved)
+            made = carrier(found.geometry, found.over)
+            if made.kind == "torus":
+                made = replace(made, inverse=_turned_near(made, 0.5 * sum(found.over[2:])))
+            return replace(made, moved=found.off + on.moved), found
     return None
+
+
+def _turned_near(on: Carrier, middle: float) -> Callable[[Array], Array]:
+    """A torus's parameters of points, v within half a turn of the middle of its domain."""
+    inverse = on.inverse
+    assert inverse is not None
+
+    def turned(points: Array) -> Array:
+        uv = inverse(points)
+        uv[:, 1] = middle + (uv[:, 1] - middle + np.pi) % FULL_TURN - np.pi
+        return uv
+
+    return turned
 
 
 def _samples(surface: Any) -> Samples:
@@ -170,4 +197,153 @@ def _cone(samples: Samples) -> Likeness | None:
     return Likeness(geometry, over, off / (least * s))
 
 
-FINDERS: tuple[Callable[[Samples], Likeness | None], ...] = (_plane, _cylinder, _cone)
+def _torus(samples: Samples) -> Likeness | None:
+    """All its normals meet the axis."""
+    from OCP.Geom import Geom_ToroidalSurface
+
+    points, normals = samples.points, samples.normals
+    middle = points.mean(axis=0)
+    size = float(np.linalg.norm(points - middle, axis=1).max())
+    x = (points - middle) / size
+    # the moment of a line's points about another vanishes where they meet
+    rows = np.column_stack([crosses(x, normals), normals])
+    _, sizes, ways = np.linalg.svd(rows, full_matrices=False)
+    axis, moment = ways[-1, :3], ways[-1, 3:]
+    long = float(np.linalg.norm(axis))
+    if sizes[-1] > SAME_NORMALS * sizes[0] or sizes[-2] <= SAME_NORMALS * sizes[0] or long == 0.0:
+        return None
+    axis, moment = axis / long, moment / long
+    foot = middle + size * np.cross(axis, moment)
+    height = (points - foot) @ axis
+    across = np.linalg.norm(points - foot - height[:, None] * axis, axis=1)
+    flat = np.column_stack([across, height])
+    (major, rise, rest), *_ = np.linalg.lstsq(
+        np.column_stack([2.0 * flat, np.ones(len(flat))]), (flat**2).sum(axis=1), rcond=None
+    )
+    minor = float(np.sqrt(max(rest + major**2 + rise**2, 0.0)))
+    if not 0.0 < minor < major:
+        return None
+    centre = foot + rise * axis
+    y, w = _beside(samples, centre)
+    wall = product(w, w)
+    square = _square(y)
+    beside = _square(y - axis[:, None, None, None] * np.tensordot(axis, y, 1))
+    near = float((beside / wall).min())
+    if not near > 0.0:
+        return None  # it meets the axis, or about there
+    # (q - r²) (q - r² + 4 R rho) with q = (rho - R)² + z², of which the first is small
+    whole = square + (major**2 - minor**2) * wall
+    four = product(whole, whole) - 4.0 * major**2 * product(beside, wall)
+    spare = _square(np.abs(y)) + (major**2 + minor**2) * wall
+    off = _greatest(four, product(wall, wall), 2.0 * product(spare, spare))
+    off = off / (2.0 * major * np.sqrt(near))
+    own = np.abs((across - major) ** 2 + (height - rise) ** 2 - minor**2).max()
+    if not max(off, own) <= major * np.sqrt(near):
+        return None
+    angle = np.arctan2(height - rise, across - major)
+    angle = angle[0] + (angle - angle[0] + np.pi) % FULL_TURN - np.pi
+    if np.ptp(angle) > MOST_ROUND:
+        return None  # it would need a seam round its tube
+    amid = 0.5 * float(angle.min() + angle.max())
+    geometry = Geom_ToroidalSurface(_frame(centre, axis), major, minor)
+    return Likeness(geometry, (0.0, FULL_TURN, amid - np.pi, amid + np.pi), off / minor)
+
+
+def _sphere(samples: Samples) -> Likeness | None:
+    """All its normals meet in one point."""
+    from OCP.Geom import Geom_SphericalSurface
+
+    points, normals = samples.points, samples.normals
+    middle = points.mean(axis=0)
+    across = np.eye(3) - normals[:, :, None] * normals[:, None, :]
+    feet = (across @ (points - middle)[..., None]).reshape(-1)
+    centre, _, rank, _ = np.linalg.lstsq(across.reshape(-1, 3), feet, rcond=SAME_NORMALS)
+    if rank < 3:
+        return None
+    centre = centre + middle
+    out = points - centre
+    radius = float(np.linalg.norm(out, axis=1).mean())
+    ways = np.sign((out * normals).sum(axis=1))
+    if radius == 0.0 or np.ptp(ways) > 0.0:
+        return None
+    y, w = _beside(samples, centre)
+    wall = product(w, w)
+    off = _greatest(_square(y) - radius**2 * wall, wall, _square(np.abs(y)) + radius**2 * wall)
+    geometry = Geom_SphericalSurface(_frame(centre, UP), radius)
+    # |r² - R²| is at least R |r - R|
+    over = (0.0, FULL_TURN, -0.5 * np.pi, 0.5 * np.pi)
+    return Likeness(geometry, over, off / radius, int(ways[0]))
+
+
+FINDERS: tuple[Callable[[Samples], Likeness | None], ...] = (
+    _plane,
+    _cylinder,
+    _cone,
+    _sphere,
+    _torus,
+)
+
+
+def recognised_curve(made: Converted, most: float) -> tuple[Converted, float] | None:
+    """A spline as the line or the circle's arc that it is within `most`, and how far at most,
+    lengths; None if it is neither."""
+    curve = made.curve
+    if not isinstance(curve, NurbsCurve):
+        return None
+    h = np.moveaxis(curve.blocks, -1, 0)
+    breaks = curve.essential.breaks
+    ts = np.unique(np.linspace(breaks[:-1], breaks[1:], CURVE_SAMPLES))
+    points = curve.points(ts)
+    for found in (_line(points, h), _arc(points, h, curve.closed)):
+        if found is not None and found[1] <= most:
+            return Converted(found[0], affine=False), found[1]
+    return None
+
+
+def _line(points: Array, h: Array) -> tuple[Curve, float] | None:
+    a, b = points[0], points[-1]
+    long = float(np.linalg.norm(b - a))
+    along = (points - a) @ (b - a)
+    if long == 0.0 or not (np.diff(along) > 0.0).all():
+        return None
+    way = (b - a) / long
+    y = h[:3] - a[:, None, None] * h[3]
+    off = np.abs(y - way[:, None, None] * np.tensordot(way, y, 1)) + NET_ROUNDING * np.abs(y)
+    return Line(a, b), float((np.linalg.norm(off, axis=0) / h[3]).max())
+
+
+def _arc(points: Array, h: Array, closed: bool) -> tuple[Curve, float] | None:
+    middle = points.mean(axis=0)
+    frame = np.linalg.svd(points - middle, full_matrices=False)[2]
+    flat = (points - middle) @ frame[:2].T
+    rows = np.column_stack([2.0 * flat, np.ones(len(flat))])
+    found, _, rank, _ = np.linalg.lstsq(rows, (flat**2).sum(axis=1), rcond=None)
+    if rank < 3:
+        return None
+    centre = middle + found[:2] @ frame[:2]
+    radius = float(np.sqrt(found[2] + found[:2] @ found[:2]))
+    x = points[0] - centre
+    x = x - (x @ frame[2]) * frame[2]
+    x = x / np.linalg.norm(x)
+    z = frame[2]
+    y = np.cross(z, x)
+    turns = np.unwrap(np.arctan2((points - centre) @ y, (points - centre) @ x))
+    if turns[-1] < 0.0:
+        y, z, turns = -y, -z, -turns
+    whole = abs(turns[-1] - FULL_TURN) <= WHOLE_CONIC * FULL_TURN
+    if not (np.diff(turns) > 0.0).all() or whole != closed or (turns[-1] > FULL_TURN and not whole):
+        return None
+    moved = h[:3] - centre[:, None, None] * h[3]
+    above = _curve_product(*([np.tensordot(np.stack([x, y]), moved, 1)] * 2)).sum(axis=0)
+    wall = _curve_product(h[3], h[3])
+    spare = _curve_product(np.abs(moved), np.abs(moved)).sum(axis=0) + radius**2 * wall
+    round_ = _greatest(above - radius**2 * wall, wall, spare) / radius
+    flat_off = (np.abs(np.tensordot(z, moved, 1)) + NET_ROUNDING * np.abs(moved).max(axis=0)) / h[3]
+    last = FULL_TURN if whole else float(turns[-1])
+    off = float(np.hypot(round_, flat_off.max()))
+    return ConicArc(centre, radius * x, radius * y, 0.0, last), off
+
+
+def _curve_product(a: Array, b: Array) -> Array:
+    """The product of polynomials of one parameter, (..., m, n) coefficients."""
+    return np.asarray(product(a[..., None], b[..., None])[..., 0])

@@ -1,8 +1,8 @@
 """How far the image of a trimming curve may be from its edge, in closed form.
 
 Where both are lines, the difference is affine and greatest at an end. Where both turn once with the
-same parameter, it is a cos t + b sin t + c, found from three values. In a plane, it is that of the
-control points.
+same parameter, it is a cos t + b sin t + c, found from three values and bounded over the arc by its
+values at Chebyshev points. In a plane, it is that of the control points.
 """
 
 from __future__ import annotations
@@ -20,7 +20,11 @@ from standoff.kernels.body import layout as L
 AFFINE = np.array([0.0, 0.0, 1.0])
 ROUND_KINDS = {L.CYLINDER: (0,), L.CONE: (0,), L.TORUS: (0, 1), L.REVOLUTION: (0,)}
 """Parameters that are angles on which points depend by a sine and a cosine."""
-SPHERE_POINTS = 16
+DEGREE, POINTS = 32, 256
+"""Degree of a polynomial that is a sine or cosine of t or of 2 t over a turn but for 1e-19, and
+Chebyshev points."""
+BETWEEN = 1.0 / np.cos(0.5 * np.pi * DEGREE / POINTS)
+"""The bound over the greatest value there (see ``polynomial_bounds``)."""
 RULED_KINDS = {L.CYLINDER: (1,), L.CONE: (1,), L.EXTRUSION: (1,), L.PLANE: (0, 1)}
 """Parameters on which points depend affinely."""
 
@@ -41,29 +45,28 @@ def closed_bound(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None
     if isinstance(curve, ConicArc) and axis in ROUND_KINDS.get(surface.kind, ()):
         if slopes[axis] != 1.0:
             return None
-        at, quarter, half = (
-            _away(pcurve, curve, surface, curve.first + k * 0.5 * np.pi) for k in range(3)
-        )
+        at, quarter, half = (_away(pcurve, curve, surface, k * 0.5 * np.pi) for k in range(3))
         c = 0.5 * (at + half)
-        return _norms(c, 0.5 * (at - half), quarter - c)
+        return _turning(np.stack([at - c, quarter - c, c], axis=1), curve)
     return None
 
 
 def sphere_bound(curve: Curve, surface: Surface) -> float:
     """How far a line or an arc is at most from its image on a sphere, from the centre, length.
 
-    |C - c|² - R² is a polynomial of degree 2 in t, or in its sine and cosine: it is bounded by its
-    values at Chebyshev points, or at as many of a whole turn (see ``polynomial_bounds``).
+    |C - c|² - R² has degree 2 in t, or in its sine and cosine: its values at Chebyshev points bound
+    it over the edge.
     """
     radius = float(np.linalg.norm(surface.linear[:, 0]))
-    steps = np.pi * (np.arange(SPHERE_POINTS) + 0.5) / SPHERE_POINTS
-    if isinstance(curve, Line):
-        rows = np.stack([0.5 + 0.5 * np.cos(steps), 0.0 * steps, np.ones_like(steps)])
-    else:
-        rows = np.stack([np.cos(2.0 * steps), np.sin(2.0 * steps), np.ones_like(steps)])
-    away = (curve.basis() @ rows).T - surface.shift
-    off = np.abs(np.sum(away**2, axis=1) - radius**2).max() / np.cos(2.0 * np.pi / SPHERE_POINTS)
+    away = curve.points(_chebyshev(curve)) - surface.shift
+    off = BETWEEN * np.abs(np.sum(away**2, axis=1) - radius**2).max()
     return float(off / (radius + np.sqrt(max(radius**2 - off, 0.0))))
+
+
+def _chebyshev(curve: Curve) -> Array:
+    """POINTS parameters of a line or an arc."""
+    nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
+    return np.asarray(curve.first + (curve.last - curve.first) * nodes)
 
 
 def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
@@ -71,8 +74,11 @@ def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
     return surface.jet(u, v)[0] - curve.point(t)
 
 
-def _norms(*vectors: Array) -> float:
-    return float(sum(np.linalg.norm(vector) for vector in vectors))
+def _turning(parts: Array, curve: Curve) -> float:
+    """A bound over an arc of |a cos t + b sin t + c|, of the columns a, b and c of (3, 3)."""
+    ts = _chebyshev(curve)
+    values = np.stack([np.cos(ts), np.sin(ts), np.ones_like(ts)], axis=1) @ parts.T
+    return float(BETWEEN * np.linalg.norm(values, axis=1).max())
 
 
 def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
@@ -94,4 +100,4 @@ def _in_plane(pcurve: Pcurve, curve: Curve, surface: Surface) -> float | None:
     away = frame @ pcurve.matrix - curve.basis()
     if isinstance(curve, Line):
         return float(max(np.linalg.norm(away @ [t, 0.0, 1.0]) for t in (curve.first, curve.last)))
-    return _norms(*away.T)
+    return _turning(away, curve)

@@ -120,9 +120,12 @@ def _made(
     found = boundary.check()
     assert isinstance(found, BoundaryReport)
     near = FILE_AREA * found.volume + found.slack * found.area
-    area, notes = _checked_areas(boundary, pieces, size)
+    area, notes = _checked_areas(boundary, joined, pieces, size)
     if pieces.recognised:
-        kinds = ", ".join(counted(n, kind) for kind, n in pieces.recognised.items())
+        plural = {"torus": "tori"}
+        kinds = ", ".join(
+            counted(n, kind, plural.get(kind, "")) for kind, n in sorted(pieces.recognised.items())
+        )
         notes = (*notes, f"of its splines these are others within {pieces.moved:.2g}: {kinds}")
     volume, room = judged(solid, "volume", found.volume, near)
     if abs(found.volume - volume) > room:
@@ -255,12 +258,13 @@ def _apex_misses(face: Face, pieces: Pieces) -> Iterator[float]:
 
 
 def _checked_areas(
-    boundary: Boundary, pieces: Pieces, size: float
+    boundary: Boundary, joined: Joined, pieces: Pieces, size: float
 ) -> tuple[float, tuple[str, ...]]:
     """The area by OpenCASCADE, and notes; raises Refused if a face has another one than that."""
     slack, total, notes = boundary.check().slack, 0.0, []
+    known = {k: area for shell in joined.enclosed.values() for k, area in shell.areas.items()}
     for number, face in enumerate(pieces.sources):
-        own = face_area(boundary, number, size)
+        own = face_area(boundary, number, size, known.get(number))
         near = FILE_AREA * (own + FILE_AREA * size**2) + slack * size
         theirs, room = judged(face, "area", own, near)
         total += theirs
@@ -272,8 +276,13 @@ def _checked_areas(
     return total, tuple(notes)
 
 
-def face_area(boundary: Boundary, number: int, size: float) -> float:
-    """The area of one face, length squared."""
+def face_area(
+    boundary: Boundary, number: int, size: float, known: tuple[float, float] | None = None
+) -> float:
+    """The area of one face, length squared; that which is known, and by how much that is off, where
+    it is good enough."""
+    if known is not None and known[1] <= FILE_AREA * (known[0] + FILE_AREA * size**2):
+        return known[0]
     face = boundary.face_parts[number]
     centre = face.charts[0].shift
     if face.loop:

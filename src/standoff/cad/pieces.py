@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.topology import Apex, Edge, Face
-from standoff.cad.canonical import recognised
+from standoff.cad.canonical import Likeness, recognised, recognised_curve
 from standoff.cad.curves import Converted, converted, isoline
 from standoff.cad.measures import named
 from standoff.cad.opencascade import cast, coordinates, explored, forward
@@ -24,7 +24,7 @@ from standoff.cad.surfaces import Carrier, basis_surface, carrier, grown
 from standoff.cad.tolerances import MISSED_POLE, RECOGNISED
 from standoff.cad.trims import extent, limits_of, trim
 from standoff.errors import BodyError, StandoffError
-from standoff.geometry.curves import FULL_TURN
+from standoff.geometry.curves import FULL_TURN, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.validation import Array
 
@@ -43,8 +43,8 @@ class Pieces:
     sources : the file's faces.
     names : of the file's faces, as a CAD program finds them.
     trims : how often a trimming curve was "exact", the "file"'s or "fitted".
-    recognised : how often a spline was a plane, cylinder or cone.
-    moved : how far a surface was moved at most, length.
+    recognised : how often a spline was a plane, cylinder, cone, sphere, torus, line or circle.
+    moved : how far a surface or an edge was moved at most, length.
     """
 
     vertices: list[Array] = field(default_factory=list)
@@ -96,13 +96,43 @@ class _Maker:
 
         self.pieces = Pieces()
         self.size = size
-        self.vertex_map, self.edge_map = Shapes(), Shapes()
+        self.vertex_map, self.edge_map, self.face_map = Shapes(), Shapes(), Shapes()
         self.given = Shapes()
         for edge in explored(solid if original is None else original, "edge"):
             self.given.Add(edge)
         self.vertex_numbers: dict[int, int] = {}
         self.made: dict[int, list[tuple[int, Converted]]] = {}
         self.busy = self._busy_vertices(solid)
+        self.carriers: dict[int, tuple[Carrier, Likeness | None]] = {}
+        self.plain = self._plain_edges(solid)
+
+    def _carrier(self, face: Any) -> tuple[Carrier, Likeness | None]:
+        """A face's surface, and what it was recognised by."""
+        from OCP.BRep import BRep_Tool
+        from OCP.BRepTools import BRepTools
+
+        key = int(self.face_map.Add(face))
+        if key not in self.carriers:
+            on = carrier(BRep_Tool.Surface_s(face), BRepTools.UVBounds_s(face))
+            found = None
+            if on.kind == "spline" and not any(BRep_Tool.Degenerated_s(e) for e in once(face)):
+                found = recognised(on, RECOGNISED * self.size)
+            self.carriers[key] = found or (on, None)
+        return self.carriers[key]
+
+    def _plain_edges(self, solid: Any) -> set[int]:
+        """Edges whose faces all have surfaces on which points are found in closed form."""
+        plain: dict[int, bool] = {}
+        for face in explored(solid, "face"):
+            try:
+                on = self._carrier(face)[0]
+                closed = on.inverse is not None or on.kind == "sphere"
+            except StandoffError:  # told when its turn comes
+                closed = False
+            for edge in once(face):
+                key = int(self.edge_map.Add(edge))
+                plain[key] = closed and plain.get(key, True)
+        return {key for key, closed in plain.items() if closed}
 
     def _vertex_key(self, vertex: Any) -> int:
         return int(self.vertex_map.Add(vertex))
@@ -145,7 +175,17 @@ class _Maker:
                 first, last = first + shift, last + shift
         start, stop = _ends(shape)
         keys = (self._vertex_key(start), self._vertex_key(stop))
-        whole = converted(geometry, first, last)
+
+        def curve(first: float, last: float) -> Converted:
+            made = converted(geometry, first, last)
+            like = recognised_curve(made, RECOGNISED * self.size) if key in self.plain else None
+            if like is None:
+                return made
+            self.pieces.moved = max(self.pieces.moved, like[1])
+            self.pieces.recognised["line" if isinstance(like[0].curve, Line) else "circle"] += 1
+            return like[0]
+
+        whole = curve(first, last)
         found = []
         if keys[0] != keys[1]:
             found.append(self._put(whole, self.vertex(start), self.vertex(stop), shift))
@@ -153,7 +193,7 @@ class _Maker:
             found.append(self._put(whole, None, None, shift))
         else:
             middle = 0.5 * (first + last)
-            halves = converted(geometry, first, middle), converted(geometry, middle, last)
+            halves = curve(first, middle), curve(middle, last)
             amid = len(self.pieces.vertices)
             self.pieces.vertices.append(halves[0].curve.point(halves[0].curve.last))
             found.append(self._put(halves[0], self.vertex(start), amid, shift))
@@ -175,16 +215,15 @@ class _Maker:
 
         geometry = basis_surface(BRep_Tool.Surface_s(face))
         over = BRepTools.UVBounds_s(face)
-        on = carrier(geometry, over)
+        on, like = self._carrier(face)
         uses = once(face)
         made = [m for e in uses if not BRep_Tool.Degenerated_s(e) for m in self._edges(e, face)]
-        if on.kind == "spline" and not any(BRep_Tool.Degenerated_s(e) for e in uses):
-            like = recognised(on, RECOGNISED * self.size)
-            if like is None:
-                on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made]))
-            else:  # the file's trimming curves are in the spline's parameters
-                on, made = like, [(number, edge, way, None) for number, edge, way, _ in made]
-                self.pieces.recognised[like.kind] += 1
+        if like is not None:  # the file's trimming curves are in the spline's parameters
+            geometry, over = like.geometry, like.over
+            made = [(number, edge, way, None) for number, edge, way, _ in made]
+            self.pieces.recognised[on.kind] += 1
+        elif on.kind == "spline" and not any(BRep_Tool.Degenerated_s(e) for e in uses):
+            on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made]))
         sense = None
         if on.kind == "sphere":
             charts, trims = sphere_charts(
@@ -194,6 +233,7 @@ class _Maker:
                 on = sphere_by_angles(geometry, over)
             elif len(charts) > 1 and made:
                 sense = sphere_sense(geometry, face) * (-1 if cavity else 1)
+                sense *= 1 if like is None else like.way
         if on.surface.part_of is None:
             charts, trims = (on.surface,), []
             for _, converted_edge, _, flat in made:

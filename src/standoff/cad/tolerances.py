@@ -37,8 +37,8 @@ REMAINDER: Final = 1e-3
 smaller one costs a higher degree."""
 
 RECOGNISED: Final = 1e-9
-"""Fraction of the part's size within which a spline has to be a plane, cylinder or cone to be taken
-for it: what parts may miss each other by anyway. What it is off by joins the slack."""
+"""Fraction of the part's size within which a spline has to be a surface or curve of another kind to
+be taken for it: what parts may miss each other by anyway. What it is off by joins the slack."""
 
 SAME_NORMALS: Final = 1e-6
 """Of unit normals of a spline: below this they have one direction, or lie in one plane

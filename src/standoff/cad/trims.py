@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import scipy
+from scipy.optimize import elementwise
 
 from standoff.bodies.tolerances import DOMAIN_SPARE
 from standoff.cad.curves import (
@@ -143,6 +143,7 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
     by Newton's method. Where it gets no nearer, they stay."""
     surface = on.surface
     low, high = limits_of(on)
+    ranges = np.where(np.isfinite(high - low), high - low, 1.0)
     at, best = np.clip(near, low, high), near
     least = np.full(len(points), np.inf)
     for _ in range(FEET_STEPS):
@@ -150,17 +151,23 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
         surface_jets(surface.reals, surface.kind, 0, np.ascontiguousarray(at), jets)
         away, xu, xv = points - jets[:, :3], jets[:, 3:6], jets[:, 6:9]
         off = np.linalg.norm(away, axis=1)
-        best = np.where((off < least)[:, None], at, best)
+        nearer = off < least
+        if not nearer.any():
+            break
+        best = np.where(nearer[:, None], at, best)
         least = np.minimum(off, least)
         metric = [np.sum(a * b, axis=1) for a, b in ((xu, xu), (xu, xv), (xv, xv))]
         slopes = [np.sum(a * away, axis=1) for a in (xu, xv)]
         area = metric[0] * metric[2] - metric[1] ** 2
         area = np.where(area > SAME_TANGENTS * metric[0] * metric[2], area, np.inf)
+        # at a collapsed side the parameter along it is none of the point's: it stays
+        speeds = np.sqrt(metric[0]) * ranges[0], np.sqrt(metric[2]) * ranges[1]
+        moves = [speeds[k] > AT_POLE * speeds[1 - k] for k in (0, 1)]
         step = [
             (metric[2] * slopes[0] - metric[1] * slopes[1]) / area,
             (metric[0] * slopes[1] - metric[1] * slopes[0]) / area,
         ]
-        at = np.clip(at + np.stack(step, axis=1), low, high)
+        at = np.clip(at + np.stack(step, axis=1) * np.stack(moves, axis=1), low, high)
     return np.asarray(best)
 
 
@@ -327,22 +334,37 @@ def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
     """Where a curve's parameters are not smooth: at its own knots if they are few, as with many it
     is smooth enough, and where it crosses those of a surface."""
     ts = np.unique([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
-    near = SAME_KNOT * (curve.last - curve.first)
     own = curve.spans()
     found = own[1:-1].tolist() if len(own) <= FEW_SPANS else []
     uv = places(ts)
+    brackets: list[Array] = []
     for k, levels in enumerate(surface.analytic_breaks()):
         for level in np.asarray(levels).tolist():
             side = uv[:, k] - level
-            for m in np.flatnonzero(side[1:] * side[:-1] < 0.0).tolist():
+            at = np.flatnonzero(side[1:] * side[:-1] < 0.0)
+            brackets += [np.array([ts[m], ts[m + 1], k, level]) for m in at]
 
-                def away(t: float, k: int = k, level: float = level) -> float:
-                    return float(places(np.array([t]))[0, k]) - level
+    def away(t: Array, k: Array, level: Array) -> Array:
+        order = np.argsort(t)
+        uv = places(t[order])[np.argsort(order)]
+        return np.where(k == 0, uv[:, 0], uv[:, 1]) - level
 
-                if away(ts[m]) * away(ts[m + 1]) < 0.0:
-                    t = float(scipy.optimize.brentq(away, ts[m], ts[m + 1]))
-                    found += [t] if curve.first + near < t < curve.last - near else []
-    return found
+    if brackets:
+        low, high, axis, level = np.array(brackets).T
+        roots = elementwise.find_root(away, (low, high), args=(axis, level))
+        found += roots.x[roots.success].tolist()
+    return _apart(found, curve.first, curve.last)
+
+
+def _apart(ts: list[float], first: float, last: float) -> list[float]:
+    """Ascending parameters between two, without those that are another one or an end but for
+    rounding, as where a curve crosses a corner of knots."""
+    near = SAME_KNOT * (last - first)
+    found = [first]
+    for t in sorted(ts):
+        if found[-1] + near < t < last - near:
+            found.append(t)
+    return found[1:]
 
 
 def _at_pole(on: Carrier, uv: Array) -> bool:
@@ -366,6 +388,11 @@ def _fitted(
 
 
 def miss(pcurve: Pcurve, curve: Curve, surface: Surface) -> float:
-    """The greatest distance, at samples, of a trimming curve's image from its edge."""
-    ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
+    """The greatest distance, at samples between all knots, of a trimming curve's image from its
+    edge."""
+    ends = np.asarray(curve.spans())
+    if isinstance(pcurve, NurbsPcurve):
+        inside = (curve.first < pcurve.knots) & (pcurve.knots < curve.last)
+        ends = np.unique(np.concatenate([ends, pcurve.knots[inside]]))
+    ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(ends)])
     return float(misses(pcurve, curve, surface, ts).max())

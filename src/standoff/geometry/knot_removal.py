@@ -132,6 +132,8 @@ def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
         first = int(np.searchsorted(t, knot))
         near = KnotVector(t[first - p - 1 : first + times + p + 1], p)
         part = h[first - p - 1 : first + times]
+        if times > 1 and _without(near, [knot], part, place)[2] > place.limit:
+            continue  # then it cannot be removed more often
         for count in range(times, 0, -1):
             if _without(near, [knot] * count, part, place)[2] <= place.limit:
                 found += [knot] * count

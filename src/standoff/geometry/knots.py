@@ -11,7 +11,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -143,16 +143,18 @@ def bezier_spans(vector: KnotVector) -> list[tuple[int, Array]]:
 
     The matrices, (p + 1, p + 1), have no negative entries, so there is no cancellation.
     """
-    p = vector.degree
-    spans = []
-    breaks = vector.breaks
-    for low, high in pairwise(breaks):
-        s = vector.span_of(float(low))
-        unit = np.zeros((vector.count, p + 1))
-        unit[s - p : s + 1] = np.eye(p + 1)
-        rows = [blossom(vector, unit, s, [low] * (p - j) + [high] * j) for j in range(p + 1)]
-        spans.append((s - p, np.array(rows)))
-    return spans
+    p, t = vector.degree, vector.knots
+    breaks = np.asarray(vector.breaks)
+    spans = np.array([vector.span_of(low) for low in breaks[:-1].tolist()])
+    # the blossom at p - j times the lower end and j times the upper one, of each j at once
+    rows = np.broadcast_to(np.eye(p + 1), (len(spans), p + 1, p + 1, p + 1))
+    for step in range(p):
+        upper = step >= p - np.arange(p + 1)
+        at = np.where(upper, breaks[1:, None], breaks[:-1, None])[..., None]
+        low, high = (t[spans[:, None] + np.arange(k, k + p - step)] for k in (step + 1 - p, 1))
+        a = ((at - low[:, None]) / (high - low)[:, None])[..., None]
+        rows = (1.0 - a) * rows[..., :-1, :] + a * rows[..., 1:, :]
+    return [(int(s) - p, matrix) for s, matrix in zip(spans, rows[..., 0, :], strict=True)]
 
 
 def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVector, Array]:

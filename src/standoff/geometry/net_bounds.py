@@ -19,8 +19,14 @@ from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.jet_bounds import JetBounds, widened
 from standoff.geometry.patch_bounds import PatchBounds, cone_round
-from standoff.geometry.tolerances import NET_ROUNDING, SPAN_ROUNDING
+from standoff.geometry.tolerances import (
+    CONE_ROUNDING,
+    NET_ROUNDING,
+    POLYNOMIAL_WEIGHTS,
+    SPAN_ROUNDING,
+)
 from standoff.geometry.validation import Array
+from standoff.kernels.entries.queries import net_cones
 
 EPS = float(np.finfo(np.float64).eps)
 # Cones wider than this (radians) are computed again from the product of the nets.
@@ -107,6 +113,31 @@ class CutNets:
                 row = (slice(None), at, -end) if axis == 0 else (slice(None), at, slice(None), -end)
                 plain.lo[row] = plain.hi[row] = 0.0
         return _flat(plain)
+
+    @cached_property
+    def polynomial(self) -> bool:
+        """Are all weights one number, but for the roundoff of inserted knots? What that moves, the
+        spare for rounding covers."""
+        w = self.h[..., 3]
+        return bool(np.ptp(w) <= POLYNOMIAL_WEIGHTS * np.abs(w).max())
+
+    def normal_cones(self) -> tuple[Array, Array]:
+        """(axis (n, 3), angle (n,)) of cones around x_u × x_v, angle pi where none is known."""
+        if not self.polynomial:
+            return cone_round(self.normals())
+        points = self.net(0, 0)
+        w, x = self.h.flat[3], points.middle[:3]
+        net = np.moveaxis((x - x.mean(axis=(2, 3), keepdims=True)) / w, 0, -1)
+        reach = np.abs(x).max(axis=(0, 2, 3))
+        off = np.linalg.norm(points.radius[:3], axis=0).max(axis=(1, 2)) + NET_ROUNDING * reach
+        sides = [self._collapsed(axis, end) for axis in (0, 1) for end in (0, 1)]
+        found = np.empty((len(net), 4))
+        p, q = (count - 1 for count in net.shape[1:3])
+        rows = np.ascontiguousarray(net.reshape(len(net), -1))
+        collapsed = np.stack(sides, axis=1).astype(np.float64)
+        net_cones(rows, p, q, off / abs(w), collapsed, NET_ROUNDING, found)
+        angle = found[:, 3] + CONE_ROUNDING
+        return found[:, :3], np.where(angle < 0.5 * np.pi, angle, np.pi)
 
     def _collapsed(self, axis: int, end: int) -> NDArray[np.bool_]:
         """(n,) which parts begin (0) or end (1) along u or v at a side that is a single point."""

@@ -245,9 +245,8 @@ class NurbsSurface(Surface):
         return net_bounds(self.nets_over, boxes)
 
     def cones_over(self, boxes: Boxes) -> tuple[Array, Array]:
-        """Those of `bounds_over`, which knows more than the jets."""
-        found = self.bounds_over(boxes)
-        return found.axis, found.angle
+        """From the control nets of the normals."""
+        return self.nets_over(boxes).normal_cones()
 
     def refined(self, knots_u: Sequence[float] = (), knots_v: Sequence[float] = ()) -> NurbsSurface:
         """The same surface with further knots inserted inside its domain."""

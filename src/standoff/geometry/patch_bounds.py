@@ -73,17 +73,25 @@ class PatchBounds:
         least, greatest = np.full(count, np.inf), np.full(count, -np.inf)
         np.minimum.at(least, owners, self.least)
         np.maximum.at(greatest, owners, self.greatest)
-        axis = np.zeros((count, 3))
-        np.add.at(axis, owners, self.axis)
-        alone = np.bincount(owners, minlength=count) == 1
-        size = np.linalg.norm(axis, axis=1)
-        axis = np.where(size[:, None] > 0.0, axis, [0.0, 0.0, 1.0])
-        axis = np.where(alone[:, None], axis, axis / np.linalg.norm(axis, axis=1)[:, None])
-        away = between(axis[owners].T, self.axis.T)
-        reach = np.where(alone[owners], self.angle, self.angle + away + CONE_ROUNDING)
-        angle = np.zeros(count)
-        np.maximum.at(angle, owners, reach)
-        return PatchBounds(low, high, axis, _known(angle), least, greatest)
+        cones = merged_cones(self.axis, self.angle, owners, count)
+        return PatchBounds(low, high, *cones, least, greatest)
+
+
+def merged_cones(
+    axes: Array, angles: Array, owners: NDArray[np.int64], count: int
+) -> tuple[Array, Array]:
+    """Cones around those of the parts of `count` rectangles, which belong to `owners` (n,)."""
+    axis = np.zeros((count, 3))
+    np.add.at(axis, owners, axes)
+    alone = np.bincount(owners, minlength=count) == 1
+    size = np.linalg.norm(axis, axis=1)
+    axis = np.where(size[:, None] > 0.0, axis, [0.0, 0.0, 1.0])
+    axis = np.where(alone[:, None], axis, axis / np.linalg.norm(axis, axis=1)[:, None])
+    away = between(axis[owners].T, axes.T)
+    reach = np.where(alone[owners], angles, angles + away + CONE_ROUNDING)
+    angle = np.zeros(count)
+    np.maximum.at(angle, owners, reach)
+    return axis, _known(angle)
 
 
 def between(a: Array, b: Array) -> Array:

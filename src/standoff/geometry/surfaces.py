@@ -304,14 +304,12 @@ class Surface(KeepsReadOnly, ABC):
         StandoffError
             A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
         """
-        from standoff.geometry.patch_bounds import checked_rectangles, cut
+        from standoff.geometry.patch_bounds import checked_rectangles, cut, merged_cones
 
         boxes = checked_rectangles(rectangles)
-        parts, _ = cut(boxes, self.analytic_breaks())
-        if len(parts) == len(boxes):
-            return self.cones_over(parts)
-        found = self.bounds(rectangles)
-        return found.axis, found.angle
+        parts, owners = cut(boxes, self.analytic_breaks())
+        cones = self.cones_over(parts)
+        return cones if len(parts) == len(boxes) else merged_cones(*cones, owners, len(boxes))
 
     @abstractmethod
     def jets_over(self, boxes: Boxes) -> Interval:

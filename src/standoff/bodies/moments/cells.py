@@ -8,7 +8,7 @@ two costs nothing (J. Waldvogel, BIT Numerical Mathematics 46, 2006, 195-202).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -26,6 +26,9 @@ SAFETY = 8.0
 # A cell this narrow, as a fraction of its original rectangle, is not refined further.
 NARROWEST_CELL = 2.0**-40
 
+# Points that a boundary of many cells may use for each, some ten times as many as at first.
+CELL_NODES = 500
+
 Integrand = Callable[[Array, Array], Array]
 """Parameters (m,) and (n,) to values (m, n, columns) on their grid."""
 
@@ -41,12 +44,15 @@ class Cell:
         Its corners.
     levels : pair of int
         2^level - 1 nodes along each parameter.
+    owner : int
+        The face of which it is a part.
     """
 
     function: Integrand
     low: tuple[float, float] = (0.0, 0.0)
     high: tuple[float, float] = (1.0, 1.0)
     levels: tuple[int, int] = (FIRST_LEVEL, FIRST_LEVEL)
+    owner: int = 0
 
 
 @dataclass(frozen=True)
@@ -84,12 +90,15 @@ class Total:
         Integrals of absolute values.
     nodes : int
         How many points were used.
+    of : dict
+        (values, remainder) of each owner's cells.
     """
 
     values: Array
     remainder: Array
     magnitude: Array
     nodes: int
+    of: dict[int, tuple[Array, Array]]
 
 
 @cache
@@ -150,9 +159,10 @@ def integrate(
     tolerance : float
         Relative to these scales.
     most : int
-        About the greatest number of points to use. What is reached by then is the answer, and its
-        remainder says how accurate it is.
+        About the greatest number of points to use, or `CELL_NODES` for each cell if that is more.
+        What is reached by then is the answer, and its remainder says how accurate it is.
     """
+    most = max(most, CELL_NODES * len(cells))
     found = [(cell, evaluated(cell)) for cell in cells]
     nodes = sum(_count(cell) for cell in cells)
     while nodes < most:
@@ -165,11 +175,16 @@ def integrate(
         nodes += sum(_count(cell) for cell in finer)
         kept = [found[k] for k in np.flatnonzero(~due)]
         found = kept + [(cell, evaluated(cell)) for cell in finer]
+    of: dict[int, tuple[Array, Array]] = {}
+    for cell, sums in found:
+        values, remainder = of.get(cell.owner, (0.0, 0.0))
+        of[cell.owner] = values + sums.values, remainder + sums.remainder
     return Total(
         np.sum([sums.values for _, sums in found], axis=0),
         np.sum([sums.remainder for _, sums in found], axis=0),
         np.sum([sums.magnitude for _, sums in found], axis=0),
         nodes,
+        of,
     )
 
 
@@ -196,7 +211,7 @@ def _refined(cell: Cell, sums: Sums, unit: Array) -> list[Cell]:
     for k in axes:
         levels[k] = min(levels[k] + 1, LAST_LEVEL)
     if not full:
-        return [Cell(cell.function, low, high, (levels[0], levels[1]))]
+        return [replace(cell, levels=(levels[0], levels[1]))]
     axis = max(full, key=lambda k: needs[k])
     levels[axis] = LAST_LEVEL - 1
     middle = 0.5 * (low[axis] + high[axis])
@@ -204,6 +219,6 @@ def _refined(cell: Cell, sums: Sums, unit: Array) -> list[Cell]:
     right = tuple(middle if k == axis else low[k] for k in (0, 1))
     pair = (levels[0], levels[1])
     return [
-        Cell(cell.function, low, (left[0], left[1]), pair),
-        Cell(cell.function, (right[0], right[1]), high, pair),
+        replace(cell, high=(left[0], left[1]), levels=pair),
+        replace(cell, low=(right[0], right[1]), levels=pair),
     ]

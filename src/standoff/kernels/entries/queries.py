@@ -4,10 +4,13 @@ A kernel that got arrays from Python and pointers from other kernels would be co
 all that it calls. These are the few that the layers above need.
 """
 
+import numpy as np
+
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.algebra.vectors import unit
 from standoff.kernels.body import features, jets, trimming
 from standoff.kernels.body import inner_box as inner_boxes
+from standoff.kernels.body.net_normals import net_cone
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import (
     INT,
@@ -67,6 +70,14 @@ def pcurve_jets(reals, kind, o, ts, out):
     at = pointer(reals, 0)
     for i in range(len(ts)):
         write_vectors(out, i, jets.pcurve_jet(at, kind, o, ts[i]))
+
+
+@entry(READ_ROWS, INT, INT, READ, READ_ROWS, REAL, ROWS, work="bodies")
+def net_cones(nets, p, q, off, collapsed, rounding, out):
+    """Cones of normals of control nets of degrees (p, q), one a row, into rows (axis, angle)."""
+    units = np.empty((4 * p * q, 3))
+    for i in range(len(nets)):
+        net_cone(nets, i, (p, q), off[i], collapsed, rounding, units, out)
 
 
 @kernel

@@ -19,6 +19,7 @@ from standoff.geometry.series import Series, power
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
+from standoff.geometry.tolerances import POLYNOMIAL_WEIGHTS
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.solids.spatial.tolerances import DERIVATIVE_INFLATION
@@ -110,13 +111,15 @@ def _nurbs(surface: Surface, rows: Array) -> Array:
 def _of_nets(nets: CutNets, linear: Array, orders: Sequence[tuple[int, int]]) -> Array:
     """(n, k - 1) bounds of derivatives of k orders, the lowest first, from the nets of the
     homogeneous ones, by Leibniz's rule for x w."""
+    if nets.polynomial:
+        return _of_polynomials(nets, linear, orders)
+    found = np.zeros((len(nets.h), len(orders) - 1))
     centre = interval(nets.points.middle.mean(axis=1)[:, None])
     h, w = {}, {}
     for order in orders:
         net = _row(nets.net(*order))
         h[order], w[order] = _hull(net[:3] - centre * net[3]), _hull(net[3])
     x = {(0, 0): _hull(nets.points - centre)}
-    found = np.zeros((len(nets.h), len(orders) - 1))
     for k, (a, b) in enumerate(orders[1:]):
         total = h[a, b]
         for i, j in orders:
@@ -126,6 +129,25 @@ def _of_nets(nets: CutNets, linear: Array, orders: Sequence[tuple[int, int]]) ->
         x[a, b] = total / w[0, 0]
         mapped_ = mapped(linear, x[a, b])
         found[:, k] = length(mapped_[0], mapped_[1], mapped_[2]).hi
+    return np.where(np.isfinite(found), found, np.inf)
+
+
+def _of_polynomials(nets: CutNets, linear: Array, orders: Sequence[tuple[int, int]]) -> Array:
+    """The same of polynomials, whose derivatives are no longer than the longest of their nets."""
+    found = np.zeros((len(nets.h), len(orders) - 1))
+    w, most = abs(float(nets.h.flat[3])), float(np.linalg.norm(linear, 2))
+    points = nets.h[..., :3] - nets.h[..., :3].mean(axis=(1, 2), keepdims=True)
+    degrees = [size - 1 for size in nets.h.shape[1:3]]
+    # weights that are 1 up to roundoff move a point of the net by this
+    uneven = POLYNOMIAL_WEIGHTS * np.linalg.norm(points, axis=3).max(axis=(1, 2))
+    for k, order in enumerate(orders[1:]):
+        net, moved = nets.net(*order), most * uneven
+        rows = np.tensordot(linear, net.middle[:3], 1)
+        off = most * np.linalg.norm(net.radius[:3], axis=0)
+        found[:, k] = (np.linalg.norm(rows, axis=0) + off).max(axis=(1, 2))
+        for degree, width, times in zip(degrees, nets.widths, order, strict=True):
+            moved = moved * (2.0 * degree / width) ** times
+        found[:, k] = (found[:, k] + moved) / w
     return np.where(np.isfinite(found), found, np.inf)
 
 

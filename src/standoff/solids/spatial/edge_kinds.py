@@ -2,8 +2,9 @@
 
 With the unit normals n and m of both faces and the unit tangent t along which the first face's loop
 runs, (n × m) . t is the sine of the edge's turn, above 0 at a convex edge. Where n, m and t are in
-cones of the half angles a, b and c, it differs from its value at their axes by no more than
-2 sin(a / 2) + 2 sin(b / 2) + 2 sin(c / 2). Where that does not decide, a part of an edge is halved.
+cones of the half angles a, b and c, n × m differs from that of the axes by no more than
+o = 2 sin(a / 2) + 2 sin(b / 2), and the sine by o + 2 sin(c / 2) |n × m|. Where that does not
+decide, a part of an edge is halved.
 
 Around an arc whose faces both are turned about its axis, the turn is the same all along, so that
 one place decides; so it does along a line of two faces with one normal each along it.
@@ -14,6 +15,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.boundary import EdgeKind
 from standoff.bodies.face_leaves import FaceChart
@@ -29,9 +31,16 @@ from standoff.kernels.entries.queries import chart_normal, coedge_parameters
 from standoff.kernels.solids.torus_potential import AXIS_OF, CENTRE_OF, CONE_OF, TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of
 from standoff.solids.spatial.derivative_bounds import curve_derivatives
-from standoff.solids.spatial.leaves import UNKNOWN, Cone, edge_flags, face_cones
+from standoff.solids.spatial.leaves import (
+    UNKNOWN,
+    Cone,
+    NormalCones,
+    edge_flags,
+    face_cones,
+    ranked,
+)
 from standoff.solids.spatial.tolerances import ONE_AXIS, ROUND_KIND, TURN_ROUNDING
-from standoff.solids.spatial.trims import Piece, edge_ranges
+from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
 
 # Parts of an edge at first, radians; and how often a part is halved.
 FIRST_ARC = 0.6
@@ -48,9 +57,10 @@ class Side(NamedTuple):
 
 
 def proven_kinds(
-    boundary: PackedParts, charts: dict[int, FaceChart], pieces: list[Piece]
+    boundary: PackedParts, charts: dict[int, FaceChart], pieces: list[Piece], columns: PieceColumns
 ) -> list[EdgeKind | None]:
-    """Of each edge, what is proven of all its points; None where only samples decide."""
+    """Of each edge, what is proven of all its points; None where only samples decide. `columns`
+    are those of the pieces."""
     sides = _sides(boundary)
     found: list[EdgeKind | None] = [None] * boundary.n_edges
     of_edge: dict[int, list[Piece]] = {}
@@ -63,26 +73,24 @@ def proven_kinds(
         found[k] = _constant(boundary, charts, of_edge.get(k, []), sides[k], k)
         if found[k] is None:
             asked[k] = list(edge_ranges(edge.curve, FIRST_ARC, boundary.size))
-    told: dict[int, set[EdgeKind]] = {k: set() for k in asked}
+    told: dict[int, set[EdgeKind | None]] = {k: set() for k in asked}
     for depth in range(MOST_HALVINGS + 1):
+        kinds, lost = _decided(boundary, asked, sides, face_cones(charts, columns, asked))
         waiting: dict[int, list[Range]] = {}
-        cones = face_cones(charts, pieces, asked)
+        number = 0
         for k, parts in asked.items():
-            curve = boundary.edge_parts[k].curve
-            tangents = _tangents(curve, parts)
-            for number, part in enumerate(parts):
-                kind = _decided(cones.get((k, number), {}), tangents[number], sides[k])
-                if kind is not None:
-                    told[k].add(kind)
-                elif depth < MOST_HALVINGS and not _smooth(boundary, k):
+            for part in parts:
+                kind = kinds[number]
+                if kind is None and depth < MOST_HALVINGS and not lost[number]:
                     middle = 0.5 * (part[0] + part[1])
                     waiting.setdefault(k, []).extend([(part[0], middle), (middle, part[1])])
                 else:
-                    told[k] = set(EdgeKind)
-        asked = {k: parts for k, parts in waiting.items() if len(told[k]) < 2}
-    for k, kinds in told.items():
-        found[k] = next(iter(kinds)) if len(kinds) == 1 else None
-        if kinds == {EdgeKind.CONVEX, EdgeKind.REFLEX}:
+                    told[k].add(kind)
+                number += 1
+        asked = {k: parts for k, parts in waiting.items() if len(told[k] - {None}) < 2}
+    for k, each in told.items():
+        found[k] = next(iter(each)) if len(each) == 1 else None
+        if {EdgeKind.CONVEX, EdgeKind.REFLEX} <= each:
             found[k] = EdgeKind.MIXED
     return found
 
@@ -128,29 +136,63 @@ def _tangents(curve: Curve, parts: list[Range]) -> list[Cone]:
     return found
 
 
-def _decided(cones: dict[int, list[Cone]], tangent: Cone, sides: list[Side]) -> EdgeKind | None:
-    """The kind of a part of an edge by the cones of its faces' normals and of its tangents."""
-    ones, others = (cones.get(side.face, []) for side in sides)
-    if not ones or not others:
-        return None
-    (n, a), (m, b) = (
-        (np.array([axis for axis, _ in each]).T, np.array([angle for _, angle in each]))
-        for each in (ones, others)
-    )
-    return _kind(n, m, tangent[0] * sides[0].way, (a[:, None], b, tangent[1]))
+def _decided(
+    boundary: PackedParts,
+    asked: dict[int, list[Range]],
+    sides: list[list[Side]],
+    cones: NormalCones,
+) -> tuple[list[EdgeKind | None], NDArray[np.bool_]]:
+    """The kind of each part of edges by the cones of its faces' normals and of its tangents, and
+    where a narrower part decides no better: a smooth edge's, or one with the same normals' cones
+    that leave it open whatever the tangent is."""
+    counts = [len(parts) for parts in asked.values()]
+    count = sum(counts)
+    tangents = [
+        t for k, parts in asked.items() for t in _tangents(boundary.edge_parts[k].curve, parts)
+    ]
+    edges = np.repeat(np.array(list(asked), dtype=np.int64), counts)
+    firsts, ways = np.reshape([(sides[k][0].face, sides[k][0].way) for k in asked], (-1, 2)).T
+    mine = cones.face == np.repeat(firsts, counts)[cones.part]
+    ones, others = np.flatnonzero(mine), np.flatnonzero(~mine)
+    many = np.bincount(cones.part[others], minlength=count)
+    at = cones.part[ones]
+    i, j = np.repeat(ones, many[at]), others[ranked((np.cumsum(many) - many)[at], many[at])]
+    part = cones.part[i]
+    t = np.reshape([axis for axis, _ in tangents], (-1, 3)) * np.repeat(ways, counts)[:, None]
+    turns = np.array([angle for _, angle in tangents])[part]
+    kinds = _kinds(cones.axis[i], cones.axis[j], t[part], (cones.angle[i], cones.angle[j], turns))
+    lost = np.array([_smooth(boundary, k) for k in edges.tolist()], dtype=bool)
+    lost[part[kinds.lost & cones.final[i] & cones.final[j]]] = True
+    found: list[EdgeKind | None] = [None] * count
+    for kind, shown in kinds.shown.items():
+        every = np.bincount(part, minlength=count) > 0
+        every[part[~shown]] = False
+        for number in np.flatnonzero(every).tolist():
+            found[number] = kind
+    return found, lost
 
 
-def _kind(n: Array, m: Array, t: Array, angles: tuple[Any, Any, float]) -> EdgeKind | None:
-    """The kind where normals n (3, k) and m (3, l), of cones of these half angles, (k, 1) and (l,),
-    meet along t; None where it isn't the same of all, or some do not decide."""
-    n, m = n[:, :, None], m[:, None, :]
-    if (between(n, m) + angles[0] + angles[1] + TURN_ROUNDING <= SMOOTH_ANGLE).all():
-        return EdgeKind.SMOOTH
-    sine = crosses(np.moveaxis(n, 0, -1), np.moveaxis(m, 0, -1)) @ t
-    spare = sum(2.0 * np.sin(0.5 * np.minimum(angle, np.pi)) for angle in angles) + TURN_ROUNDING
-    if (np.abs(sine) <= spare).any() or (sine > 0.0).any() != (sine > 0.0).all():
-        return None
-    return EdgeKind.CONVEX if sine.flat[0] > 0.0 else EdgeKind.REFLEX
+class Kinds(NamedTuple):
+    """Where each kind is shown, and where none is whatever the tangents are, (n,)."""
+
+    shown: dict[EdgeKind, NDArray[np.bool_]]
+    lost: NDArray[np.bool_]
+
+
+def _kinds(n: Array, m: Array, t: Array, angles: tuple[Any, Any, Any]) -> Kinds:
+    """Where normals n and m, of cones of these half angles, meet along t, all (k, 3)."""
+    smooth = between(n.T, m.T) + angles[0] + angles[1] + TURN_ROUNDING <= SMOOTH_ANGLE
+    turned = crosses(n, m)
+    sine, size = (turned * t).sum(axis=-1), np.linalg.norm(turned, axis=-1)
+    one, other, along = (2.0 * np.sin(0.5 * np.minimum(angle, np.pi)) for angle in angles)
+    off = one + other
+    spare = off + np.minimum(size + off, 1.0) * along + TURN_ROUNDING
+    shown = {
+        EdgeKind.REFLEX: ~smooth & (sine < -spare),
+        EdgeKind.CONVEX: ~smooth & (sine > spare),
+        EdgeKind.SMOOTH: smooth,
+    }
+    return Kinds(shown, ~smooth & (np.abs(sine) + size * along <= off))
 
 
 def _constant(
@@ -183,7 +225,8 @@ def _constant(
         normals.append(np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v)))
         tangent = np.asarray(curve.jet(t)[1], dtype=float)
     way = sides[0].way * tangent / np.linalg.norm(tangent)
-    return _kind(normals[0][:, None], normals[1][:, None], way, (0.0, 0.0, 0.0))
+    shown = _kinds(normals[0], normals[1], way, (0.0, 0.0, 0.0)).shown
+    return next((kind for kind, at in shown.items() if at), None)
 
 
 def _one_surface(one: FaceChart, other: FaceChart, size: float) -> bool:

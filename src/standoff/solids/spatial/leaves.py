@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,7 @@ from standoff.solids.spatial.tolerances import (
     SMOOTH_JOIN,
     SPOT_SPARE,
 )
-from standoff.solids.spatial.trims import Piece, edge_ranges
+from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
 
 # Half angle of a leaf's cone of normals, radians.
 WIDEST = 0.5
@@ -278,65 +279,97 @@ def edge_leaves(
 Cone = tuple[Array, float]
 
 
+class NormalCones(NamedTuple):
+    """Cones that hold a face's outward normals along parts of edges, in the order of the parts.
+
+    Columns: numbers of the parts and faces, axes (n, 3), half angles (radians), and whether a
+    narrower part would have the same cone.
+    """
+
+    part: NDArray[np.int64]
+    face: NDArray[np.int64]
+    axis: Array
+    angle: Array
+    final: NDArray[np.bool_]
+
+
 def face_cones(
     charts: dict[int, FaceChart],
-    pieces: list[Piece],
+    pieces: PieceColumns,
     ranges: Mapping[int, Sequence[tuple[float, float]]],
-) -> dict[tuple[int, int], dict[int, list[Cone]]]:
-    """Of each part (edge, k) of each edge and each face beside it: cones that hold the face's
-    outward normals along the part, as (axis, half angle).
+) -> NormalCones:
+    """Of ascending parts of edges, numbered in their order, and each face beside them.
 
     Each chart is asked once for all parts of all its edges.
     """
-    asked: dict[int, list[tuple[int, int, Array]]] = {}
-    for piece in pieces:
-        for k, (first, last) in enumerate(ranges.get(piece.edge, ())):
-            if first < piece.last and piece.first < last:
-                rows = piece.clipped(first, last)
-                asked.setdefault(piece.chart, []).append((piece.edge, k, rows))
-    around: dict[tuple[int, int], dict[int, list[Cone]]] = {}
-    for number, parts in asked.items():
-        chart = charts[number]
-        every = _normal_cones(chart, np.array([rows for _, _, rows in parts]))
-        for (edge, k, _), cone in zip(parts, every, strict=True):
-            around.setdefault((edge, k), {}).setdefault(chart.face, []).append(cone)
-    return around
+    numbers = np.argsort(pieces.edge, kind="stable")
+    edges = pieces.edge[numbers]
+    which, part, start = [np.empty(0, np.int64)], [np.empty(0, np.int64)], 0
+    for edge, parts in ranges.items():
+        own = numbers[np.searchsorted(edges, edge) : np.searchsorted(edges, edge, "right")]
+        low, high = np.reshape(parts, (-1, 2)).T
+        first = np.searchsorted(high, pieces.ends[own, 0], "right")
+        count = np.maximum(np.searchsorted(low, pieces.ends[own, 1]) - first, 0)
+        which.append(np.repeat(own, count))
+        part.append(start + ranked(first, count))
+        start += len(low)
+    all_pieces, all_parts = np.concatenate(which), np.concatenate(part)
+    order = np.argsort(all_parts, kind="stable")
+    all_pieces, all_parts = all_pieces[order], all_parts[order]
+    ends = np.reshape([each for parts in ranges.values() for each in parts], (-1, 2))[all_parts]
+    rows = pieces.clipped(all_pieces, ends)
+    axis, angle = np.zeros((len(rows), 3)), np.zeros(len(rows))
+    chart = pieces.chart[all_pieces]
+    for number in np.unique(chart).tolist():
+        own = np.flatnonzero(chart == number)
+        axis[own], angle[own] = _normal_cones(charts[number], rows[own])
+    within = (pieces.ends[all_pieces] - ends) * [1.0, -1.0] <= 0.0
+    faces = np.array([charts[number].face for number in chart.tolist()], dtype=np.int64)
+    final = ~pieces.straight[all_pieces] & within.all(axis=1)
+    return NormalCones(all_parts, faces, axis, angle, final)
+
+
+def ranked(first: NDArray[np.int64], count: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The numbers first, first + 1, ... of each group, `count` of each."""
+    within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    return np.asarray(np.repeat(first, count) + within)
 
 
 def edge_cones(
-    charts: dict[int, FaceChart], pieces: list[Piece], ranges: dict[int, list[tuple[float, float]]]
+    charts: dict[int, FaceChart],
+    pieces: PieceColumns,
+    ranges: dict[int, list[tuple[float, float]]],
 ) -> dict[int, list[Cone]]:
     """(axis, half angle) of a cone round both faces' normals along each part of each edge."""
-    around = face_cones(charts, pieces, ranges)
-    keys = [(edge, k) for edge, parts in ranges.items() for k in range(len(parts))]
-    groups = [[cone for own in around.get(key, {}).values() for cone in own] for key in keys]
-    found: dict[int, list[Cone]] = {edge: [] for edge in ranges}
-    for (edge, _), cone in zip(keys, _cones_round(groups), strict=True):
-        found[edge].append(cone)
-    return found
+    counts = [len(parts) for parts in ranges.values()]
+    every = _cones_round(face_cones(charts, pieces, ranges), sum(counts))
+    ends = np.cumsum(counts).tolist()
+    return {
+        edge: every[end - count : end]
+        for edge, count, end in zip(ranges, counts, ends, strict=True)
+    }
 
 
-def _normal_cones(chart: FaceChart, rows: Array) -> list[Cone]:
-    """Of a chart's outward normals over rectangles; unknown ones where it has no bounds."""
+def _normal_cones(chart: FaceChart, rows: Array) -> tuple[Array, Array]:
+    """(axes, half angles) of a chart's outward normals over rectangles; unknown ones where it has
+    no bounds."""
     try:
         axes, angles = chart.surface.normal_cones(rows)
     except ValueError:
-        return [(np.array([0.0, 0.0, 1.0]), UNKNOWN)] * len(rows)
-    return [(chart.outward * axis, float(angle)) for axis, angle in zip(axes, angles, strict=True)]
+        return np.tile([0.0, 0.0, 1.0], (len(rows), 1)), np.full(len(rows), UNKNOWN)
+    return chart.outward * axes, angles
 
 
-def _cones_round(groups: list[list[Cone]]) -> list[Cone]:
-    """A cone around each group of some; of the half angle `UNKNOWN` where it would be too wide."""
-    owners = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
-    axes = np.reshape([axis for group in groups for axis, _ in group], (-1, 3))
-    angles = np.array([angle for group in groups for _, angle in group])
-    total = np.zeros((len(groups), 3))
-    np.add.at(total, owners, axes)
+def _cones_round(cones: NormalCones, count: int) -> list[Cone]:
+    """A cone around those of each of `count` parts; of the half angle `UNKNOWN` where it would be
+    too wide."""
+    total = np.zeros((count, 3))
+    np.add.at(total, cones.part, cones.axis)
     scale = np.linalg.norm(total, axis=1, keepdims=True)
     known = scale > NO_AXIS
     axis = np.where(known, total / np.where(known, scale, 1.0), [0.0, 0.0, 1.0])
     wide = np.where(known[:, 0], 0.0, UNKNOWN)
-    np.maximum.at(wide, owners, between(axis[owners].T, axes.T) + angles)
+    np.maximum.at(wide, cones.part, between(axis[cones.part].T, cones.axis.T) + cones.angle)
     wide = np.where(wide + SMOOTH_JOIN < 0.5 * np.pi, wide + SMOOTH_JOIN, UNKNOWN)
     return list(zip(axis, wide.tolist(), strict=True))
 

@@ -17,7 +17,7 @@ from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import near_own_leaves
 from standoff.solids.spatial.derivative_bounds import surface_derivatives
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.spatial.tolerances import JOINT_PARTS, VERTEX_SHARE
+from standoff.solids.spatial.tolerances import JOINT_PARTS, JOINT_ROOM, VERTEX_SHARE
 
 Pairs = NDArray[np.int64]
 # Room for nodes that wait: two for each level of the tree.
@@ -63,7 +63,7 @@ def own_pairs(solid: SolidModel, within: float) -> tuple[list[OwnPairs], int]:
     keys = np.sort(faces, axis=1)
     order = np.lexsort((keys[:, 1], keys[:, 0]))
     starts = np.flatnonzero(np.any(np.diff(keys[order], axis=0, prepend=-1) != 0, axis=1))
-    joints = Joints(solid.boundary)
+    joints = Joints(solid.boundary, JOINT_ROOM * within)
     found: list[OwnPairs] = []
     beside = 0
     for rows in np.split(order, starts[1:]):
@@ -144,10 +144,11 @@ def _across(jet: Any) -> tuple[float, float]:
 
 
 class Joints:
-    """The edges and vertices that faces have in common, as points with radii round them."""
+    """The edges and vertices that faces have in common, as points with radii round them, of `least`
+    at least, length."""
 
-    def __init__(self, boundary: PackedParts) -> None:
-        self.boundary = boundary
+    def __init__(self, boundary: PackedParts, least: float) -> None:
+        self.boundary, self.least = boundary, least
         self.edges: dict[int, Array] = {}
         lengths: dict[int, float] = {}
         around: dict[tuple[int, int], set[tuple[str, int]]] = defaultdict(set)
@@ -169,7 +170,9 @@ class Joints:
     def between(self, one: int, other: int) -> Array:
         """(m, 4) of two faces, or of one and its collapsed sides."""
         parts = sorted(self.around.get((one, other), ()))
-        return np.concatenate([np.zeros((0, 4)), *self._points(parts)])
+        found = np.concatenate([np.zeros((0, 4)), *self._points(parts)])
+        found[:, 3] = np.maximum(found[:, 3], self.least)
+        return found
 
     def _points(self, parts: list[tuple[str, int]]) -> Iterator[Array]:
         for kind, number in parts:

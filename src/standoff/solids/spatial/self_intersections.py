@@ -81,7 +81,7 @@ class SelfIntersections:
     beside : int
         Pairs of pieces that are proven so, but for the neighbourhood of what joins them, where it
         is not looked for: a 32nd of an edge's length round it, a thousandth of the shortest edge
-        round a vertex.
+        round a vertex, twice the tolerance at least.
     undecided : int
         Pairs of pieces that neither were found to meet nor are proven not to.
     """
@@ -242,9 +242,15 @@ def _deepest(solid: SolidModel, group: OwnPairs, rows: Array) -> dict[Key, SelfI
                 row = pair.found_from(first, start)
                 if row is not None and row[0] <= common:
                     other = _place(solid, row)
-                    if other.depth > places[key].depth:
+                    if other.depth > places[key].depth and _away(group.joint, other):
                         places[key] = other
     return places
+
+
+def _away(joint: Array, place: SelfIntersection) -> bool:
+    """Is a place away from what joins its faces, where they always meet?"""
+    off = np.linalg.norm(joint[:, :3] - place.point_a, axis=1)
+    return bool((off > joint[:, 3]).all())
 
 
 def _place(solid: SolidModel, row: Array) -> SelfIntersection:

@@ -89,6 +89,9 @@ JOINT_PARTS: Final = 32
 """Parts of an edge: nearer to it than one is long, faces that it joins are not looked at."""
 VERTEX_SHARE: Final = 1e-3
 """Of the shortest edge at a vertex: nearer to it, faces that it joins are not looked at."""
+JOINT_ROOM: Final = 2.0
+"""Of the length below which faces meet: they do so as near as this to what joins them, where they
+leave it at 30 degrees or more."""
 LEAST_ANGLE: Final = 1e-6
 """Sine of the angle of two faces below which they touch rather than cross."""
 SHORT_WAY: Final = 4.0

@@ -27,7 +27,7 @@ from standoff.solids.spatial.leaves import (
 )
 from standoff.solids.spatial.screws import put_screws
 from standoff.solids.spatial.tolerances import CONE_ROUNDINGS, NO_AXIS
-from standoff.solids.spatial.trims import Piece, pieces_of
+from standoff.solids.spatial.trims import Piece, columns_of, pieces_of
 
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
 
@@ -53,9 +53,11 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, 
         for leaf in face_leaves(boundary, chart, pieces, own[number], boundary.size)
     ]
     put_screws(found, charts)
-    sampled = sampled_edges(proven_kinds(boundary, charts, pieces), boundary.edge_kinds)
+    columns = columns_of(pieces)
+    kinds = proven_kinds(boundary, charts, pieces, columns)
+    sampled = sampled_edges(kinds, boundary.edge_kinds)
     ranges = {k: parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
-    cones = edge_cones(charts, pieces, ranges)
+    cones = edge_cones(charts, columns, ranges)
     round_faces = {}
     natural = {number: natural_of(chart) for number, chart in charts.items()}
     for piece in pieces:

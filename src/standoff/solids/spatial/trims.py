@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
@@ -52,16 +54,42 @@ class Piece:
     bounds: Array
     straight: Array | None
 
-    def clipped(self, first: float, last: float) -> Array:
-        """(4,) a rectangle (u0, u1, v0, v1) around the part between two parameters."""
-        low, high = self.low, self.high
-        if self.straight is not None and self.last > self.first:
-            s = (np.clip([first, last], self.first, self.last) - self.first) / (
-                self.last - self.first
-            )
-            ends = self.straight[0] + s[:, None] * (self.straight[1] - self.straight[0])
-            low, high = ends.min(axis=0), ends.max(axis=0)
-        return np.array([low[0], high[0], low[1], high[1]])
+
+class PieceColumns(NamedTuple):
+    """Pieces as columns: their edges, charts, parameters (n, 2), boxes (n, 4) as rectangles
+    (u0, u1, v0, v1), which are straight, and the ends (n, 2, 2) of these."""
+
+    edge: NDArray[np.int64]
+    chart: NDArray[np.int64]
+    ends: Array
+    boxes: Array
+    straight: NDArray[np.bool_]
+    corners: Array
+
+    def clipped(self, which: NDArray[np.int64], ranges: Array) -> Array:
+        """(n, 4) rectangles around the parts of pieces (n,) within ranges (n, 2)."""
+        found = self.boxes[which]
+        at = np.flatnonzero(self.straight[which])
+        first, last = self.ends[which[at]].T
+        shares = (np.clip(ranges[at].T, first, last) - first) / (last - first)
+        start, stop = np.moveaxis(self.corners[which[at]], 1, 0)
+        ends = start + shares[..., None] * (stop - start)
+        found[at, ::2], found[at, 1::2] = ends.min(axis=0), ends.max(axis=0)
+        return found
+
+
+def columns_of(pieces: list[Piece]) -> PieceColumns:
+    straight = np.array([p.straight is not None and p.last > p.first for p in pieces], dtype=bool)
+    corners = [np.zeros((2, 2)) if p.straight is None else p.straight for p in pieces]
+    boxes = np.reshape([(p.low, p.high) for p in pieces], (-1, 2, 2))
+    return PieceColumns(
+        np.array([p.edge for p in pieces], dtype=np.int64),
+        np.array([p.chart for p in pieces], dtype=np.int64),
+        np.reshape([(p.first, p.last) for p in pieces], (-1, 2)),
+        np.moveaxis(boxes, 1, 2).reshape(-1, 4),
+        straight,
+        np.reshape(corners, (-1, 2, 2)),
+    )
 
 
 def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece]:
