@@ -340,9 +340,9 @@ def settled(phi, sign, most, part, q, counts):
     has more, 0 not known."""
     side, leaf, b = part.side, part.leaf, part.box
     u, v = min(max(q[0], b.u0), b.u1), min(max(q[1], b.v0), b.v1)
-    if round_at_most(phi, sign, most, side, leaf, b, u, v):
-        return 1
     if greatest(phi, sign, side, leaf, b, u, v)[0] <= most:
+        return 1
+    if round_at_most(phi, sign, most, side, leaf, b, u, v):
         return 1
     if is_plane(phi):
         known, height = height_greatest(phi, sign, side, leaf, b)
