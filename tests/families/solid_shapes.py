@@ -52,30 +52,9 @@ def tube(inner: float, outer: float, low: float, high: float) -> Solid:
     return Solid.from_brep(edges=edges, faces=faces, name="tube")
 
 
-@cache
-def cup(inner: float, outer: float, floor: float, high: float) -> Solid:
-    """A blind hole from `high` down to `floor`, in a cylinder from 0."""
-    edges = [circle(outer, 0.0), circle(outer, high), circle(inner, floor), circle(inner, high)]
-    faces = [
-        level(0.0, (0, 1)),
-        wall(outer, (0, 1), (1, 1)),
-        level(high, (1, 1), (3, 1)),
-        wall(inner, (2, 1), (3, 1)),
-        level(floor, (2, 1)),
-    ]
-    return Solid.from_brep(edges=edges, faces=faces, name="cup")
-
-
 def taper(slope: float, apex: float, *loop: tuple[int, int]) -> Face:
     """A cone about z of so much radius per height above its apex."""
     return Face((Cone(np.diag([slope, slope, 1.0]), apex * z),), loop)
-
-
-@cache
-def taper_plug(slope: float, apex: float, low: float, high: float) -> Solid:
-    edges = [circle(slope * (low - apex), low), circle(slope * (high - apex), high)]
-    faces = [level(low, (0, 1)), taper(slope, apex, (0, 1), (1, 1)), level(high, (1, 1))]
-    return Solid.from_brep(edges=edges, faces=faces, name="taper plug")
 
 
 @cache

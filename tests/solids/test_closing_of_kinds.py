@@ -3,15 +3,19 @@ what is true, and nothing that is false."""
 
 import numpy as np
 import pytest
+from benchmarks import fits
 from scipy.spatial.transform import Rotation
 from test_spatial_search import negative_tolerance
 
-from families.solid_shapes import bolt, bracket, cup, peg, ring, taper_bore, taper_plug, tube
+from families.solid_shapes import bolt, bracket, peg, ring, tube
+from standoff.geometry import Line, Revolution
 from standoff.solids import Solid
 from standoff.solids.spatial.distance import spatial_distance
+from standoff.solids.spatial.points import signed_distances
 from standoff.tracking.status import Status
 
 PROVEN = (Status.CONVERGED, Status.CONTINUUM)
+LINKS, SOME_GAPS = "link through link", (1e-6, 1e-2, 1.0)
 OFF = (0.0, 1e-9, 1e-6, 1e-3, 2e-2)
 
 
@@ -90,36 +94,49 @@ def test_a_tilted_rim_over_a_plane() -> None:
         assert answer.distance == pytest.approx(least, abs=1e-5)
 
 
-SLOPE = 0.05
-FITS = {
-    "pin": (lambda gap: (tube(3.0, 6.0, 0.0, 20.0), peg(3.0 - gap, 0.0, 20.0)), 1.0),
-    "bush": (lambda gap: (tube(3.0, 6.0, 0.0, 20.0), tube(1.0, 3.0 - gap, 0.0, 20.0)), 1.0),
-    "plug in a blind hole": (
-        lambda gap: (cup(3.0, 6.0, 5.0, 20.0), peg(3.0 - gap, 7.0, 20.0)),
-        1.0,
-    ),
-    "taper": (
-        lambda gap: (
-            taper_bore(SLOPE, -60.0, 6.0, 0.0, 20.0),
-            taper_plug(SLOPE, gap / SLOPE - 60.0, 0.0, 20.0),
-        ),
-        np.cos(np.arctan(SLOPE)),
-    ),
-}
-"""Of a gap along the radius: the parts, and the distance over it."""
+@pytest.mark.parametrize(
+    "kind",
+    ["pin", "bush", "bearing", "plug in a blind hole", "taper", LINKS, "O-ring on a bend"],
+)
+def test_fits_and_rings_on_tubes(kind) -> None:
+    """In closed form: flush or not, aside or tilted by any amount; nothing beyond it is claimed."""
+    every = [case for case in fits.cases(SOME_GAPS) if case.kind == kind]
+    assert len(every) >= 9
+    for k, case in enumerate(every[::2]):
+        answer = spatial_distance(case.a, case.b, None, (case.turn, case.move))
+        assert fits.holds(case, answer), (case.what, answer)
+        assert answer.counts.boxes < 8_000, case.what
+        if k % 3 == 0:
+            beyond = max(1e-3 * case.true, 1e-9)
+            assert claimed(case.a, case.b, case.turn, case.move, beyond) <= case.true + 1e-12
 
 
-@pytest.mark.parametrize("gap", [1.0, 0.1, 1e-2, 1e-3, 1e-5])
-@pytest.mark.parametrize("name", FITS)
-def test_coaxial_walls_whose_rims_are_in_one_plane(name, gap) -> None:
-    """A pin flush with its bore, lifted a little, and moved aside."""
-    (a, b), share = FITS[name][0](gap), FITS[name][1]
-    places = [(0.0, 0.0), (0.0, 1e-6), (0.3 * gap, 0.0), (1e-9, 0.0)]
-    for aside, lift in places if name != "taper" else places[:1]:
-        move = np.array([0.6 * aside, 0.8 * aside, lift])
-        answer = spatial_distance(a, b, None, (np.eye(3), move))
-        true = (gap - aside) * share
-        assert answer.status in PROVEN, (aside, lift, answer.status)
-        assert answer.distance == pytest.approx(true, abs=1e-12)
-        assert answer.lower_bound <= true + 1e-13
-        assert answer.counts.boxes < 150_000, (aside, lift)
+@pytest.mark.parametrize("aside", [0.0, 0.3, 0.99])
+def test_turned_lines_close_as_cylinders_do(aside) -> None:
+    """A shaft in its bore, of straight lines that are turned."""
+
+    def turned(inner: float, outer: float, low: float, high: float) -> Solid:
+        corners = np.array([[inner, low], [outer, low], [outer, high], [inner, high]])
+        ends = [(r, 0.0, h) for r, h in corners]
+        lines = [Line(p, q) for p, q in zip(ends, ends[1:] + ends[:1], strict=True)]
+        return Solid.from_patches([Revolution(line) for line in lines], name="turned")
+
+    a, b = turned(1.7, 2.0, 0.0, 4.0), turned(2.1, 2.6, -1.0, 5.0)
+    move = np.array([0.06 * aside, 0.08 * aside, 0.0])
+    answer = spatial_distance(a, b, None, (np.eye(3), move))
+    true = 0.1 * (1.0 - aside)
+    assert answer.status in PROVEN
+    assert answer.lower_bound <= true <= answer.upper_bound + 1e-14
+    assert answer.counts.boxes < 8_000
+    assert claimed(a, b, np.eye(3), move, 1e-4) <= true + 1e-12
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-9, 1e-3, 0.2])
+def test_points_inside_a_ring_and_a_pin(off) -> None:
+    """Near the middle of a tube, from where all round is as near: seen from either side."""
+    link = next(case.a for case in fits.cases(SOME_GAPS) if case.kind == LINKS)
+    for solid, x, radius in ((link, fits.BEND, 0.4), (peg(0.5, -3.0, 3.0), 0.0, 0.5)):
+        told, true = signed_distances(solid, np.array([[x + off, 0.0, 0.0]])), radius - off
+        assert told.converged[0]
+        assert told.lower_bound[0] - 1e-14 <= -true <= told.upper_bound[0] + 1e-14
+        assert told.evaluations[0] < 3_000

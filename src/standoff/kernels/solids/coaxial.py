@@ -8,7 +8,6 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, axpy, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.round_axis import arc_axis, arc_offset
 from standoff.kernels.solids.spatial_likeness import (
     moved_line,
     off_axis,
@@ -32,8 +31,8 @@ from standoff.kernels.solids.torus_potential import (
 NO_POTENTIAL = Potential(CONE_OF, ZERO, ZERO, ZERO, ZERO, 0.0, 0.0, 1.0)
 # Radii over the size from which on a circle counts as a line: its potential would lose digits.
 LARGEST_RADIUS = 30.0
-# Pieces of a flat face's trimming curves that are looked at for an axis.
-MOST_ARCS = 8
+# Where the point of a leaf's own kind stands in its reals; its axis comes next.
+OWN_POINT = S.NATURAL_REALS + 3
 
 
 @kernel
@@ -49,57 +48,48 @@ def is_one_line(point, axis, other_point, other_axis, size):
 
 
 @kernel
-def trim_axis(side, leaf, k):
-    """(known, point, axis) of the k-th piece of a leaf's trimming curves, if it is an arc."""
-    own = side.own
-    piece = own[own[S.LISTS] + own[leaf_ints(side, leaf) + S.LIST] + k]
-    arc = arc_offset(side, own[own[S.PIECES] + S.PIECE_INTS * piece + 1])
-    return arc_axis(side, arc) if arc >= 0 else (False, ZERO, ZERO)
+def turning_along(part):
+    """(known, axis) along a line about which a part turns, as a flat face does about its normal."""
+    if is_flat(part.side, part.leaf):
+        return True, moved_line(part.side, leaf_reals(part.side, part.leaf) + OWN_POINT)[1]
+    known, _, axis = turning(part.side, part.leaf)
+    return known, axis
 
 
 @kernel
-def n_arcs(side, leaf):
-    """Of a flat face: how many pieces of its trimming curves are looked at for an axis."""
-    return min(side.own[leaf_ints(side, leaf) + S.N_LIST], MOST_ARCS) if is_flat(side, leaf) else 0
+def turns_along(part, axis):
+    """Does a part turn about a line that is nearly parallel to an axis?"""
+    known, own = turning_along(part)
+    return known and abs(dot(axis, own)) >= 1.0 - NEARLY_COAXIAL
 
 
 @kernel
-def is_cut_about(side, leaf, point, axis, size):
-    """Is a flat face trimmed by an arc about nearly a line?"""
-    for k in range(n_arcs(side, leaf)):
-        known, other_point, other_axis = trim_axis(side, leaf, k)
-        if known and is_one_line(point, axis, other_point, other_axis, size):
-            return True
-    return False
+def turn_alike(a, b):
+    """Do two parts turn about lines that are nearly parallel?"""
+    known, axis = turning_along(a)
+    return known and turns_along(b, axis)
 
 
 @kernel
-def turns_about(part, point, axis, n, size):
-    """Does a part turn about nearly a line? A plane turns about each of its normals, which here is
-    n, and its rim about its own axis."""
+def turns_about(part, point, axis, size):
+    """Does a part turn about nearly a line? A plane turns about each of its normals."""
     known, own_point, own_axis = turning(part.side, part.leaf)
     if known:
         return is_one_line(point, axis, own_point, own_axis, size)
-    if not is_flat(part.side, part.leaf):
-        return False
-    if abs(dot(axis, n)) >= 1.0 - NEARLY_COAXIAL:
-        return True
-    return is_cut_about(part.side, part.leaf, point, axis, size)
+    return turns_along(part, axis)
 
 
 @kernel
-def common_axis(a, b, n, size):
-    """(known, point, axis) about which both of two parts nearly turn."""
-    known, point, axis = turning(a.side, a.leaf)
-    if known:
-        return turns_about(b, point, axis, n, size), point, axis
-    known, point, axis = turning(b.side, b.leaf)
-    if known:
-        return turns_about(a, point, axis, n, size), point, axis
-    for k in range(n_arcs(a.side, a.leaf)):
-        known, point, axis = trim_axis(a.side, a.leaf, k)
-        if known and is_cut_about(b.side, b.leaf, point, axis, size):
-            return True, point, axis
+def common_axis(a, b, leaves, size):
+    """(known, point, axis) about which both of two parts nearly turn: of theirs, or of two leaves
+    of the same solids."""
+    for k in range(4):
+        side = a.side if k % 2 == 0 else b.side
+        leaf = (a.leaf if k == 0 else b.leaf) if k < 2 else leaves[k - 2]
+        known, point, axis = turning(side, leaf)
+        if known:
+            both = turns_about(a, point, axis, size) and turns_about(b, point, axis, size)
+            return both, point, axis
     return False, ZERO, ZERO
 
 
@@ -160,15 +150,18 @@ def in_meridian(x, y, n, point, axis):
 
 
 @kernel
-def own_straight(side, leaf, at, n):
-    """(known, potential) of the cylinder or the cone that a leaf lies on, along n: exact, where a
-    normal between two points has as few digits as they are near."""
+def own_straight(side, leaf, x, n):
+    """(known, potential) of the cylinder or the cone that a leaf lies on, if it grows along n at
+    x: exact, where a normal between two points has as few digits as they are near."""
     kind = own_kind(side, leaf)
     if kind not in (AXIS_OF, CONE_OF):
         return False, NO_POTENTIAL
     o, m = leaf_reals(side, leaf) + S.NATURAL_REALS, side.numbers
     point, axis = moved_line(side, o + 3)
-    slope = dot(at.out, n)
+    radial = sub(x, point)
+    radial = axpy(-dot(radial, axis), axis, radial)
+    rho = norm(radial)
+    slope = dot(radial, n) / rho if rho > 0.0 else 0.0
     if kind == CONE_OF:
         slope = m[o + 1] * slope - m[o + 2] * dot(axis, n)
     sign = 1.0 if slope > 0.0 else -1.0
@@ -183,16 +176,6 @@ def straight_about(at):
         return Potential(AXIS_OF, at.point, ZERO, ZERO, at.axis, 0.0, 0.0, at.nr)
     foot = axpy(at.z, at.axis, at.point)
     return Potential(CONE_OF, foot, ZERO, ZERO, at.axis, at.nr, -at.nz, 1.0)
-
-
-@kernel
-def straight_through(a, leaf_a, b, leaf_b, at, n):
-    """The same through two points: that of a leaf of theirs if there is one."""
-    known, phi = own_straight(a, leaf_a, at, n)
-    if known:
-        return phi
-    known, phi = own_straight(b, leaf_b, at, n)
-    return phi if known else straight_about(at)
 
 
 @kernel

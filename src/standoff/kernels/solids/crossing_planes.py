@@ -7,8 +7,12 @@ from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import axpy, cross, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.over_plane import is_plane_leaf
-from standoff.kernels.solids.spatial_pieces import OUTSIDE_TRIM, leaf_jet, trim_state
+from standoff.kernels.solids.spatial_pieces import (
+    OUTSIDE_TRIM,
+    is_plane_leaf,
+    leaf_jet,
+    trim_state,
+)
 from standoff.kernels.solids.spatial_tolerances import CROSSING_SPARE, LEAST_CROSSING
 
 # Parts of the line that are looked at, and that wait.

@@ -37,13 +37,13 @@ from standoff.kernels.solids.spatial_closing import (
     by_witness,
     closed_off_trim,
     closed_to,
+    own_toward,
     split,
     widths,
 )
 from standoff.kernels.solids.spatial_pieces import (
     leaf_ints,
     leaf_jet,
-    natural,
     reach_of,
 )
 from standoff.kernels.solids.spatial_progress import (
@@ -119,10 +119,10 @@ def closed_again(way, goal, pair, limit, best, counts):
     a, b, q, _ = pair
     if way == OWN_A:
         closed = by_own_surface(goal, a, b, (q[2], q[3]), limit, counts)
-        return closed, natural(a.side, a.leaf)[1]
+        return closed, own_toward(a, b, (q[2], q[3]))[1]
     if way == OWN_B:
         closed = by_own_surface(goal, b, a, (q[0], q[1]), limit, counts)
-        return closed, natural(b.side, b.leaf)[1]
+        return closed, own_toward(b, a, (q[0], q[1]))[1]
     if way < THERE:
         at, one = (a.leaf, b.leaf, q), way - HERE
     else:

@@ -7,8 +7,6 @@ point's foot in the plane is on the face, and it is above it (``docs/closing.md`
 from typing import Any, NamedTuple
 
 from standoff.kernels.algebra.vectors import axpy, dot, norm, scale
-from standoff.kernels.body import layout as L
-from standoff.kernels.body.features import chart_record
 from standoff.kernels.compiler.decorators import kernel, reals_on_stack
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_bounds import greatest
@@ -16,27 +14,16 @@ from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_minimum import plane_between
 from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
-    leaf_ints,
+    is_plane_leaf,
     leaf_jet,
     leaf_reals,
     outward_normal,
     trim_state,
 )
 from standoff.kernels.solids.spatial_tolerances import SMOOTH_SPARE
-from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 
 # Boxes that wait; the stack holds 4 numbers of each, and 2 boxes more.
 MOST_WAITING = 24
-
-
-@kernel
-def is_plane_leaf(side, leaf):
-    """Of a chart with straight parameters: a turned line may be flat too."""
-    r = leaf_ints(side, leaf)
-    if side.own[r + S.DIM] != 2 or side.own[r + S.NATURAL] != TORUS_THROUGH:
-        return False
-    c = chart_record(side.ints, side.own[r + S.CHART])
-    return side.ints[c + L.CHART_KIND] == L.PLANE
 
 
 @kernel

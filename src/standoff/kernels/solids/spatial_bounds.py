@@ -3,7 +3,7 @@
 from math import inf
 
 from standoff.kernels.algebra.roots import sqrt
-from standoff.kernels.algebra.vectors import cross, dot, norm, rotate
+from standoff.kernels.algebra.vectors import axpy, cross, dot, norm, rotate, sub
 from standoff.kernels.body import layout as L
 from standoff.kernels.body.features import (
     chart_record,
@@ -15,11 +15,9 @@ from standoff.kernels.compiler.decorators import kernel, reals_on_stack, shared
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.quadratic_max import line_max, quadratic_max, widened
 from standoff.kernels.solids.round_axis import (
-    arc_axis,
-    arc_data,
+    arc_at_most,
     arc_offset,
-    axis_data,
-    round_axis_greatest,
+    round_at_most,
 )
 from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_likeness import (
@@ -34,6 +32,7 @@ from standoff.kernels.solids.spatial_pieces import (
     OUTSIDE_TRIM,
     box_between,
     is_bent,
+    is_plane_leaf,
     leaf_ints,
     leaf_jet,
     leaf_reals,
@@ -46,6 +45,8 @@ from standoff.kernels.solids.spatial_pieces import (
 )
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
+    CENTRE_OF,
+    CIRCLE_OF,
     CONE_OF,
     THIRD,
     TORUS_THROUGH,
@@ -184,24 +185,9 @@ def greatest(phi, sign, side, leaf, box, u, v):
 
 
 @kernel
-def arc_third(phi, side, arc, x, lengths, reach):
-    """A bound of the third derivative of a potential along an arc that turns about nearly its
-    axis; inf where it does not. lengths: of the arc's derivatives."""
-    known, point, axis = arc_axis(side, arc)
-    if not known:
-        return inf
-    e, w = to_axis(phi, point, axis, x, reach)
-    d1, d2, d3 = differences(phi, x, reach, e, w)
-    if d1 == inf:
-        return inf
-    l1, l2, l3 = lengths
-    return d3 * l1 * l1 * l1 + 3.0 * d2 * l1 * l2 + d1 * l3
-
-
-@kernel
-def greatest_along(phi, sign, side, piece, ta, tb):
-    """(bound of sign phi over a part of a trimming curve, value in its middle); where the potential
-    does not serve, no bound and no value."""
+def greatest_along(phi, sign, most, side, piece, ta, tb):
+    """(bound of sign phi over a part of a trimming curve, as far as it is more than `most`, value
+    in its middle); where the potential does not serve, no bound and no value."""
     own, m = side.own, side.numbers
     o = own[S.R_PIECES] + S.PIECE_REALS * piece
     h, t = 0.5 * (tb - ta), 0.5 * (ta + tb)
@@ -218,20 +204,16 @@ def greatest_along(phi, sign, side, piece, ta, tb):
         arc = arc_offset(side, feature)
         if arc >= 0 and is_plane(phi):
             third = swing(side, arc, phi.n)
-        elif arc >= 0 and phi.kind != TORUS_THROUGH:
-            third = min(third, arc_third(phi, side, arc, jet[0], (l1, l2, l3), l1 * h))
         bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
-        if arc >= 0 and phi.kind == AXIS_OF:
-            data = arc_data(side, arc)
-            if data[0]:
-                part = S.Box(ta, tb, 0.0, 0.0)
-                bound = min(bound, round_axis_greatest(phi, sign, data, part, t, 0.0))
+        if bound > most and arc >= 0 and phi.kind in (AXIS_OF, CONE_OF, CIRCLE_OF):
+            bound = most if arc_at_most(phi, sign, most, jet, -h, h) else bound
     return bound, value
 
 
 @kernel
 def along_trim(phi, sign, most, part, counts):
-    """Is sign phi proven to be at most `most` on all trimming curves in a part's box?"""
+    """Whether sign phi is at most `most` on all trimming curves in a part's box: 1 proven, -1 a
+    point of one has more, 0 not known."""
     side, box = part.side, part.box
     r = leaf_ints(side, part.leaf)
     own, m = side.own, side.numbers
@@ -253,36 +235,88 @@ def along_trim(phi, sign, most, part, counts):
                 continue
             rounds += 1
             counts[0] += 1
-            bound, value = greatest_along(phi, sign, side, piece, ta, tb)
+            bound, value = greatest_along(phi, sign, most, side, piece, ta, tb)
             if bound <= most:
                 continue
             if rounds > MOST_PARTS or count >= PARTS_WAITING:
-                return False
+                return 0
             put_both_halves(side, piece, stack, count, (ends, p, q))
             if value > most:
                 pu, pv = part_in_place(stack, count)[2]
                 pu += m[own[S.R_PIECES] + S.PIECE_REALS * piece + S.P_SHIFT]
                 if box.u0 <= pu <= box.u1 and box.v0 <= pv <= box.v1:
-                    return False
+                    return -1
             count += 2
-    return True
+    return 1
+
+
+@kernel
+def nearest_to_axis(phi, jet):
+    """Steps of a plane's parameters, from its jet, to where the axis of a potential meets it, or to
+    the foot of its centre; none where the axis is along the plane."""
+    _, xu, xv, _, _, _ = jet
+    n = cross(xu, xv)
+    a = n if phi.kind == CENTRE_OF else phi.n
+    steep = dot(n, a)
+    off = sub(phi.o, jet[0])
+    if steep == 0.0:
+        return 0.0, 0.0
+    off = axpy(-dot(n, off) / steep, a, off)
+    uu, uv, vv = dot(xu, xu), dot(xu, xv), dot(xv, xv)
+    det = uu * vv - uv * uv
+    pu, pv = dot(off, xu), dot(off, xv)
+    return (pu * vv - pv * uv) / det, (pv * uu - pu * uv) / det
+
+
+@kernel
+def greatest_at_rim(phi, sign, most, part):
+    """Of a plane's face in a box: does sign phi exceed `most` on its trimming curves there, if it
+    does anywhere? A convex function is greatest at an extreme point of the face: on a curve, or at
+    a corner of the box that is on the face. Where a concave one exceeds `most` is convex: if that
+    holds a point off the face, a line to it from any other leaves the face across a curve."""
+    side, leaf, b = part.side, part.leaf, part.box
+    if not is_plane_leaf(side, leaf):
+        return False
+    convex = sign * phi.sign * (phi.k1 if phi.kind == CONE_OF else 1.0) > 0.0
+    if is_plane(phi):
+        convex = True
+    elif phi.kind not in (AXIS_OF, CONE_OF, CENTRE_OF):
+        return False
+    if convex:
+        for k in range(4):
+            u = b.u0 if k < 2 else b.u1
+            v = b.v0 if k % 2 == 0 else b.v1
+            value = sign * potential_jet(phi, leaf_jet(side, leaf, u, v)[0], 0.0)[0]
+            if value > most and trim_state(side, leaf, S.Box(u, u, v, v)) != OUTSIDE_TRIM:
+                return False
+        return True
+    u, v = 0.5 * (b.u0 + b.u1), 0.5 * (b.v0 + b.v1)
+    du, dv = nearest_to_axis(phi, leaf_jet(side, leaf, u, v))
+    u, v = min(max(u + du, b.u0), b.u1), min(max(v + dv, b.v0), b.v1)
+    value = sign * potential_jet(phi, leaf_jet(side, leaf, u, v)[0], 0.0)[0]
+    return value > most and trim_state(side, leaf, S.Box(u, u, v, v)) == OUTSIDE_TRIM
 
 
 @kernel
 def held_by_trim(phi, sign, most, part, g, change, counts):
-    """Is sign phi at most `most` on the part of a face in a box, because it grows along a parameter
-    up to the trimming curves, where it is not more, or to a side of the box, where it is not more
-    or where no face is? Where it grows along both, up to the curves or to a corner of the box."""
+    """Whether sign phi is at most `most` on the part of a face in a box, as `along_trim` tells it:
+    because it is greatest on the trimming curves, where it is not more, or because it grows along a
+    parameter up to the curves or to a side of the box, where it is not more or where no face is;
+    where it grows along both, up to the curves or to a corner of the box."""
     side, leaf, box = part.side, part.leaf, part.box
     along_u, along_v = abs(g[0]) > change[0], abs(g[1]) > change[1]
-    if not (along_u or along_v) or not along_trim(phi, sign, most, part, counts):
-        return False
+    at_rim = greatest_at_rim(phi, sign, most, part)
+    if not (along_u or along_v or at_rim):
+        return 0
+    told = along_trim(phi, sign, most, part, counts)
+    if told <= 0 or at_rim:
+        return told
     if along_u and along_v:
         u = box.u1 if g[0] > 0.0 else box.u0
         v = box.v1 if g[1] > 0.0 else box.v0
         if trim_state(side, leaf, S.Box(u, u, v, v)) == OUTSIDE_TRIM:
-            return True
-        return sign * potential_jet(phi, leaf_jet(side, leaf, u, v)[0], 0.0)[0] <= most
+            return 1
+        return 1 if sign * potential_jet(phi, leaf_jet(side, leaf, u, v)[0], 0.0)[0] <= most else 0
     for k in range(2):
         if not (along_u if k == 0 else along_v):
             continue
@@ -293,30 +327,29 @@ def held_by_trim(phi, sign, most, part, g, change, counts):
             at = box.v1 if g[1] > 0.0 else box.v0
             exit_ = S.Box(box.u0, box.u1, at, at)
         if trim_state(side, leaf, exit_) == OUTSIDE_TRIM:
-            return True
+            return 1
         u, v = 0.5 * (exit_.u0 + exit_.u1), 0.5 * (exit_.v0 + exit_.v1)
         if greatest(phi, sign, side, leaf, exit_, u, v)[0] <= most:
-            return True
-    return False
+            return 1
+    return 0
 
 
 @kernel
-def settled(phi, sign, most, part, data, q, counts):
+def settled(phi, sign, most, part, q, counts):
     """Whether sign phi is at most `most` on a part, as a whole: 1 proven, -1 a point of the solid
     has more, 0 not known."""
     side, leaf, b = part.side, part.leaf, part.box
     u, v = min(max(q[0], b.u0), b.u1), min(max(q[1], b.v0), b.v1)
     if greatest(phi, sign, side, leaf, b, u, v)[0] <= most:
         return 1
+    if round_at_most(phi, sign, most, side, leaf, b, u, v):
+        return 1
     if is_plane(phi):
         known, height = height_greatest(phi, sign, side, leaf, b)
         if known and height <= most:
             return 1
     cu, cv = 0.5 * (b.u0 + b.u1), 0.5 * (b.v0 + b.v1)
-    if data[0] and (
-        round_axis_greatest(phi, sign, data, b, cu, cv) <= most
-        or round_axis_greatest(phi, sign, data, b, u, v) <= most
-    ):
+    if round_at_most(phi, sign, most, side, leaf, b, cu, cv):
         return 1
     bound, value, g, change = greatest(phi, sign, side, leaf, b, cu, cv)
     if bound <= most:
@@ -328,7 +361,7 @@ def settled(phi, sign, most, part, data, q, counts):
         chart = side.own[leaf_ints(side, leaf) + S.CHART]
         if value > most and on_face(side.ints, side.reals, chart, cu, cv):
             return -1
-        return 1 if held_by_trim(phi, sign, most, part, g, change, counts) else 0
+        return held_by_trim(phi, sign, most, part, g, change, counts)
     return -1 if value > most else 0
 
 
@@ -338,8 +371,6 @@ def proven(phi, sign, most, part, q, limit, counts):
     is expected near the parameters q; `limit` boxes are looked at."""
     side, leaf, box = part.side, part.leaf, part.box
     o, m = leaf_reals(side, leaf), side.numbers
-    known, centre, first, other, along = axis_data(side, leaf)
-    data = (known and phi.kind == AXIS_OF, centre, first, other, along)
     stack = reals_on_stack(248)
     stack[0], stack[1], stack[2], stack[3] = box.u0, box.u1, box.v0, box.v1
     count, rounds, begun = 1, 0, counts[0]
@@ -349,7 +380,7 @@ def proven(phi, sign, most, part, q, limit, counts):
         b = S.Box(stack[n], stack[n + 1], stack[n + 2], stack[n + 3])
         rounds += 1
         counts[0] += 1
-        told = settled(phi, sign, most, S.Part(side, leaf, b), data, q, counts)
+        told = settled(phi, sign, most, S.Part(side, leaf, b), q, counts)
         if told > 0:
             continue
         if told < 0 or rounds > limit or count >= MOST_WAITING:

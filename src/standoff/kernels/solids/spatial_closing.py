@@ -11,8 +11,13 @@ from standoff.kernels.solids.coaxial import (
     common_axis,
     in_meridian,
     is_flat,
-    straight_through,
+    own_straight,
+    straight_about,
+    turn_alike,
+    turns_along,
 )
+from standoff.kernels.solids.crossing_planes import planes_apart
+from standoff.kernels.solids.over_plane import clear_of_plane
 from standoff.kernels.solids.screw import common_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
@@ -62,7 +67,11 @@ from standoff.kernels.solids.spatial_tolerances import (
     SMOOTH_SPARE,
     SURE_NORMAL,
 )
-from standoff.kernels.solids.torus_potential import potential_jet
+from standoff.kernels.solids.torus_potential import (
+    TORUS_THROUGH,
+    Potential,
+    potential_jet,
+)
 from standoff.kernels.solids.trim_witness import nearest_on_trim
 
 # Pairs of boxes that wait, of 9 numbers each.
@@ -72,6 +81,8 @@ MOST_PAIRS = 200
 FEW_BOXES, MOST_BOXES = 20, 400
 # Cuts of a pair of leaves after which it counts as hard.
 EASY_CUTS = 16
+# Boxes that a whole leaf is looked at with over a plane.
+MOST_CLOSING = 100
 # The same, of a potential that does for whole pieces of a thread, and of a flat end in its bore.
 SCREW_BOXES, AXIS_BOXES = 150, 150
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
@@ -95,10 +106,25 @@ def held_along(part, jet, toward, u, v):
     return mu, mv
 
 
+@kernel
+def own_toward(a, b, q):
+    """(known, potential) of A's own kind; of a face that is seen from both sides the one that grows
+    to where B's place is."""
+    known, phi = natural(a.side, a.leaf)
+    if not known or a.side.sense != S.EITHER:
+        return known, phi
+    if potential_jet(phi, leaf_jet(b.side, b.leaf, q[0], q[1])[0], 0.0)[0] >= 0.0:
+        return known, phi
+    n, sign = phi.n, -phi.sign
+    if phi.kind == TORUS_THROUGH:
+        n, sign = scale(-1.0, phi.n), 1.0
+    return known, Potential(phi.kind, phi.o, phi.e1, phi.e2, n, phi.k1, phi.k2, sign)
+
+
 @shared
 def by_own_surface(goal, a, b, q, limit, counts):
     """Does the potential of A's own kind prove that B's part is `goal` from all of A's surface?"""
-    known, phi = natural(a.side, a.leaf)
+    known, phi = own_toward(a, b, q)
     return known and proven(phi, -1.0, -goal, b, q, limit, counts)
 
 
@@ -146,14 +172,16 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     held_b = held_along(b, jb, n, q[2], q[3]) if here else (0.0, 0.0)
     sa = shape(a.side, wa, ja, n, frame, held_a, span)
     sb = shape(b.side, wb, jb, scale(-1.0, n), frame, held_b, span)
-    turned, point, axis = common_axis(a, b, n, size)
+    turned, point, axis = common_axis(a, b, (wa, wb), size)
     known, meridian = in_meridian(x, y, n, point, axis)
     turned = turned and known
     # of rims, and of parts that go on about the axis from those whose points these are
-    if turned and first <= 1 and (not here or ends_sharply(a) or ends_sharply(b)):
-        phi = straight_through(a.side, wa, b.side, wb, meridian, n)
-        if by_one(phi, goal, a, b, (here, q, x, y, max(limit, AXIS_BOXES)), counts):
+    if first <= 1 and (not here or ends_sharply(a) or ends_sharply(b)):
+        place = (here, q, x, y, max(limit, AXIS_BOXES))
+        closed, phi = by_straight(goal, a, b, (wa, wb, n), (turned, meridian), place, counts)
+        if closed:
             return 1, phi
+        place = (here, q, x, y, limit)
     for way in range(max(first, 1), min(last, SCREWED - 1) + 1):
         if is_stopped(best, counts):
             break
@@ -167,6 +195,26 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
         if by_one(phi, goal, a, b, place, counts):
             return way, phi
     return -1, NO_POTENTIAL
+
+
+@kernel
+def by_straight(goal, a, b, at, common, place, counts):
+    """(whether a potential that is constant along lines about an axis proves it, potential): of the
+    cylinder or the cone that one of two points lies on, where both parts turn about its axis or one
+    beside it; where there is none, of one about a common axis."""
+    wa, wb, n = at
+    none = True
+    for k in range(2):
+        side, leaf, x = (a.side, wa, place[2]) if k == 0 else (b.side, wb, place[3])
+        known, phi = own_straight(side, leaf, x, n)
+        none = none and not known
+        known = known and turns_along(a, phi.n) and turns_along(b, phi.n)
+        if known and by_one(phi, goal, a, b, place, counts):
+            return True, phi
+    if none and common[0]:
+        phi = straight_about(common[1])
+        return by_one(phi, goal, a, b, place, counts), phi
+    return False, NO_POTENTIAL
 
 
 @kernel
@@ -342,10 +390,14 @@ def closed_to(goal, row, pair, limit, best, minima, counts):
     `OWN_B`), through the nearest points found in the pair (from `HERE` on), or through those that
     the goal comes from (from `THERE` on); -1: by none."""
     a, b, q, distance = pair
+    # what has fewer parameters has fewer boxes
+    b_first = dim_of(a.side, a.leaf) < dim_of(b.side, b.leaf)
+    if b_first and by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
+        return OWN_B, own_toward(b, a, (q[0], q[1]))[1]
     if by_own_surface(goal, a, b, (q[2], q[3]), limit, counts):
-        return OWN_A, natural(a.side, a.leaf)[1]
-    if by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
-        return OWN_B, natural(b.side, b.leaf)[1]
+        return OWN_A, own_toward(a, b, (q[2], q[3]))[1]
+    if not b_first and by_own_surface(goal, b, a, (q[0], q[1]), limit, counts):
+        return OWN_B, own_toward(b, a, (q[0], q[1]))[1]
     if is_stopped(best, counts):
         return -1, NO_POTENTIAL
     if distance >= goal:
@@ -384,6 +436,16 @@ def put_halves(a, b, best, work, count, low):
 
 
 @kernel
+def left_out(a, b, goal, most, best, counts):
+    """Do two parts, one or both of a plane, hold no nearest pair nearer than `goal`?"""
+    if planes_apart(a, b, best[SIZE]):
+        return True
+    if clear_of_plane(a, b, goal, best[ROUNDING], most, counts):
+        return True
+    return clear_of_plane(b, a, goal, best[ROUNDING], most, counts)
+
+
+@kernel
 def close_leaves(a, b, pair, best, minima, work, counts):
     """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
     lowers best[OPEN]."""
@@ -410,7 +472,14 @@ def close_leaves(a, b, pair, best, minima, work, counts):
             or trim_state(b, leaf_b, pb.box) == OUTSIDE_TRIM
         ):
             continue
+        # of a flush fit there are potentials, and feet that lie beside a face too closely
+        flush = cuts == 0 and turn_alike(pa, pb)
+        out = cuts == 0 and not flush
+        if out and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
+            continue
         if closed_by_any(pa, pb, best, minima, cuts >= most_easy, counts):
+            continue
+        if flush and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
             continue
         counts[BISECTIONS] += 1
         cuts += 1

@@ -81,6 +81,16 @@ def outward_normal(side, leaf, jet):
 
 
 @kernel
+def is_plane_leaf(side, leaf):
+    """Of a chart with straight parameters: a turned line may be flat too."""
+    r = leaf_ints(side, leaf)
+    if side.own[r + S.DIM] != 2 or side.own[r + S.NATURAL] != TORUS_THROUGH:
+        return False
+    c = chart_record(side.ints, side.own[r + S.CHART])
+    return side.ints[c + L.CHART_KIND] == L.PLANE
+
+
+@kernel
 def natural(side, leaf):
     """(known, potential) that is 0 on the face and grows towards the other solid, in A's frame."""
     r, o = leaf_ints(side, leaf), leaf_reals(side, leaf) + S.NATURAL_REALS

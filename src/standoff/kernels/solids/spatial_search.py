@@ -3,10 +3,13 @@ leaves that is left is closed."""
 
 from standoff.kernels.compiler.decorators import kernel, shared
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.crossing_planes import planes_apart
-from standoff.kernels.solids.over_plane import clear_of_plane
 from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
-from standoff.kernels.solids.spatial_closing import close_leaves, nearest_of, no_pair
+from standoff.kernels.solids.spatial_closing import (
+    close_leaves,
+    left_out,
+    nearest_of,
+    no_pair,
+)
 from standoff.kernels.solids.spatial_pieces import leaf_box
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
@@ -22,7 +25,6 @@ from standoff.kernels.solids.spatial_progress import (
     OF_LEAVES,
     OPEN,
     ROUNDING,
-    SIZE,
     TOLERANCE,
     bound_minima,
     evaluations,
@@ -34,8 +36,8 @@ from standoff.kernels.solids.spatial_progress import (
 
 # Share of the evaluations from which on a search is hard: all pairs are closed loosely first.
 LOOSE_FROM = 0.25
-# Boxes that a pair with a plane is looked at with: when it is met, and when it is closed.
-MOST_VISITED, MOST_CLOSING = 12, 100
+# Boxes that a pair with a plane is looked at with when it is met.
+MOST_VISITED = 12
 
 
 @kernel
@@ -103,10 +105,7 @@ def closed_pair(a, b, pair, best, minima, work, counts):
     """The proven bound of a pair of leaves, which is closed as far as it can be."""
     counts[LEAF_PAIRS] += 1
     best[OF_LEAVES] = goal_of(best) - best[ROUNDING]
-    pa = S.Part(a, pair[0], leaf_box(a, pair[0]))
-    pb = S.Part(b, pair[1], leaf_box(b, pair[1]))
-    if not left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
-        close_leaves(a, b, pair, best, minima, work, counts)
+    close_leaves(a, b, pair, best, minima, work, counts)
     return best[OF_LEAVES]
 
 
@@ -126,16 +125,6 @@ def close_loosely(a, b, first, left, best, minima, room, counts):
             low = closed_pair(a, b, pair, best, minima, work, counts)
             pairs[3 * k + 2] = max(pair[2], low)
     best[TOLERANCE], best[OPEN], best[N_OPEN], best[MOST_OPEN] = tolerance, open_, n_open, listed
-
-
-@kernel
-def left_out(a, b, goal, most, best, counts):
-    """Do two parts, one or both of a plane, hold no nearest pair nearer than `goal`?"""
-    if planes_apart(a, b, best[SIZE]):
-        return True
-    if clear_of_plane(a, b, goal, best[ROUNDING], most, counts):
-        return True
-    return clear_of_plane(b, a, goal, best[ROUNDING], most, counts)
 
 
 @kernel

@@ -45,6 +45,8 @@ lies on is taken to be it."""
 ROUND_CONIC: Final = 1e-14
 """Relative, of a squared radius: a conic whose two half axes are this near to one length, and to
 being normal to each other, is an arc of a circle."""
+CIRCLE_ROUNDING: Final = 4e-15
+"""Relative: some twenty roundings of the terms of the distance from a circle."""
 MAY_REACH: Final = 0.3
 """Of the length below which faces meet: how far one may reach beyond the other's surface where it
 counts as on one side of it. It is more than a quarter, the slack of both, and less than the half to
