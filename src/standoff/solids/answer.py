@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.linalg import norm
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
@@ -98,14 +99,24 @@ class Overlap(NamedTuple):
     depth : float
         No translation shorter than this parts the solids: twice the radius, or more.
     parting : (3,) array, optional
-        A vector, world axes: B, moved by it, is proven to be apart from A. None where that was not
-        asked, or is not proven.
+        A vector, world axes: B, moved by it, is proven to be apart from A. None in frames, which
+        do not ask for it.
+    held : float
+        No point of the boundary of one, in the other, is deeper in it than this: of a pin that is
+        pressed into its bore, the interference. inf where that was not asked, or is not proven.
     """
 
     common_point: Array
     radius: float
     depth: float
     parting: Array | None = None
+    held: float = np.inf
+
+    @property
+    def most(self) -> float:
+        """How deep the overlap is at most: the length of `parting`, or `held` where that is less;
+        inf where neither is known."""
+        return min(self.held, np.inf if self.parting is None else float(norm(self.parting)))
 
 
 class OpenPair(NamedTuple):

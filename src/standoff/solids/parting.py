@@ -11,6 +11,14 @@ from numpy.typing import NDArray
 from standoff.solids.tolerances import NO_WAY_OUT, PARTED_BY
 
 Array = NDArray[np.float64]
+Gap = tuple[float, Array]
+"""How far two solids are proven to be apart, and the normal there."""
+MOST_DRAWN = 8
+"""Queries by which a way is drawn in."""
+NEARLY = 0.999
+"""Of a gap: how much of it B is moved back."""
+GAINED = 5e-3
+"""Of a way's length: what is to be gained, at least, to go on."""
 
 
 def way_out(normals: Array) -> Array | None:
@@ -47,6 +55,34 @@ def least_way_out(normals: Array, depths: Array) -> Array | None:
     if float(np.linalg.norm(rest)) <= NO_WAY_OUT:
         return None
     return np.asarray(-scale * rest[:3] / rest[3])
+
+
+def drawn_in(way: Array, gap_of: Callable[[Array], Gap | None]) -> Array | None:
+    """A vector by which B is proven to be parted from A, drawn in from one that is longer; None
+    where that one is not proven to part them.
+
+    If the gap after a move is d, B parts as well by what is d shorter, as nothing is met on the
+    way. From there the nearest point of the plane of contact is tried, and where that does not part
+    them, what is half way to it.
+    """
+    best: Array | None = None
+    for _ in range(MOST_DRAWN):
+        told = gap_of(way)
+        if told is None:
+            if best is None:
+                return None
+            way = 0.5 * (way + best)
+            continue
+        gap, normal = told
+        length = float(np.linalg.norm(way))
+        drawn = max(0.0, 1.0 - NEARLY * gap / length) * way
+        gained = best is None or np.linalg.norm(drawn) < (1.0 - GAINED) * np.linalg.norm(best)
+        best = drawn if best is None or np.linalg.norm(drawn) < np.linalg.norm(best) else best
+        foot = (drawn @ normal) * normal * (1.0 + GAINED)
+        if not gained or np.linalg.norm(foot) > (1.0 - GAINED) * np.linalg.norm(best):
+            break
+        way = foot
+    return best
 
 
 def parted(normals: Array, tolerance: float, apart: Callable[[Array], bool]) -> float:

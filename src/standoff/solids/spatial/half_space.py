@@ -32,6 +32,8 @@ HALF_SIDE = 1.25
 """Radii of the ball round the solid that half of a side is at least: points beside the solid at
 which a common ball is sought are up to 1.06 of them from its middle."""
 
+ALONG_NORMAL = 1e-15
+"""A unit vector along the normal: what its part along it is less than 1 by, from roundings."""
 TOP = 5
 """The face of a box whose normal is z."""
 
@@ -125,6 +127,15 @@ class HalfSpaceBeside(SolidModel):
     def may_hold(self, point: Array) -> bool:
         """Its box has no end."""
         return True
+
+    @property
+    def has_end(self) -> bool:
+        """False."""
+        return False
+
+    def heights(self, ways: Array) -> Array:
+        """0 along its normal, else without end."""
+        return np.where(ways[:, 2] >= 1.0 - ALONG_NORMAL, 0.0, np.inf)
 
 
 def of_pair(own: SolidModel, pose: Pose, other: SolidModel, pose_other: Pose) -> SolidModel:

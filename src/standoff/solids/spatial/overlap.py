@@ -1,19 +1,30 @@
-"""The largest ball that is found inside both of two solids that overlap."""
+"""Balls inside two solids that overlap: the largest that is found inside both, and the two about
+one point whose radii are the greatest together."""
 
 from __future__ import annotations
 
 from itertools import product
+from typing import Any
 
 import numpy as np
 
+from standoff.bodies.hulls.fewer_points import directions
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.pair import PlacedPair
-from standoff.solids.spatial.tolerances import LAST_CLIMB, LEADS_NOWHERE, LOOKS
+from standoff.solids.spatial.points import depth_beside
+from standoff.solids.spatial.tolerances import LAST_CLIMB, LEAST_LENGTH, LOOKS
 
-# Part of the size: the first step of the ascent.
-FIRST_STEP = 0.1
-MOST_STEPS = 60
+# Of the box around both: where depths are looked at first.
+LATTICE = np.array(list(product((1.0 / 6.0, 0.5, 5.0 / 6.0), repeat=3)))
+# Points of the unit ball, beside its centre, at which slopes are followed.
+CLOUD = np.vstack([r * directions(64) for r in (1.0, 0.5, 0.25, 0.1)])
+# Starts of an ascent, and steps of one; of a depth: what a step is to gain.
+STARTS, MOST_STEPS, GAINED = 2, 24, 0.01
+# Of a step that gains nothing the next one's length; of the size: the first step's.
+SHORTER, FIRST_STEP = 0.4, 0.25
+# Steps of slopes that are kept, and how far away, in steps, they are believed.
+MOST_SLOPES, BELIEVED = 24, 4.0
 WAYS = np.array([w for w in product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
 
 
@@ -24,68 +35,111 @@ class Ascent:
         self.pair, self.left = pair, left
         self.size = min(pair.a.size, pair.b.size)
 
-    def depths(self, point: Array) -> tuple[float, float, Array, Array]:
-        da, db, ga, gb, spent = self.pair.depths(point)
+    def proven(self, point: Array) -> Overlap:
+        """The ball around a point that is proven to be inside both; of a negative radius where the
+        point is outside one."""
+        da, db, _, _, spent = self.pair.depths(point)
         self.left -= spent
-        return da, db, ga, gb
+        return Overlap(point, min(da, db), da + db if min(da, db) > 0.0 else min(da, db))
+
+    def look(self, point: Array) -> Array:
+        """(2, 7): of each solid the point, about how deep it is inside, and the slope."""
+        pair, rows = self.pair, np.zeros((2, 7))
+        sides = ((pair.a, pair.in_a(point), pair.ra), (pair.b, pair.in_b(point), pair.rb))
+        for row, (solid, own, turn) in zip(rows, sides, strict=True):
+            depth, nearest, spent = depth_beside(solid, own, pair.size)
+            self.left -= spent
+            away = turn @ (own - nearest) * (1.0 if depth > 0.0 else -1.0)
+            length = float(np.linalg.norm(away))
+            row[:3], row[3] = point, length if depth > 0.0 else -length
+            row[4:] = away / max(length, LEAST_LENGTH)
+        return rows
+
+    def climbed(self, start: Array, merit: Any, step: float) -> Array:
+        """Where the merit of both depths is the greatest near a point: the lesser, or the sum.
+
+        About a point each depth is the least of what it grows to by the slopes that were found; the
+        next point is the best of some in a ball by these.
+        """
+        best, top, slopes = start, -np.inf, np.zeros((0, 2, 7))
+        trial = start
+        for _ in range(MOST_STEPS):
+            seen = self.look(trial)
+            slopes = np.concatenate([slopes[-MOST_SLOPES:], seen[None]])
+            value = _merit(merit, *seen[:, 3])
+            if value > top + GAINED * abs(top) or top == -np.inf:
+                best, top = trial, value
+            else:
+                best, top = (trial, value) if value > top else (best, top)
+                step *= SHORTER
+            while True:
+                if step <= LAST_CLIMB * self.size or self.left <= 0:
+                    return best
+                cloud = best + step * CLOUD
+                near = slopes[np.linalg.norm(slopes[:, 0, :3] - best, axis=1) <= BELIEVED * step]
+                grown = near[:, :, 3, None] + np.einsum(
+                    "kjc,knjc->kjn", near[:, :, 4:], (cloud[None, :, None] - near[:, None, :, :3])
+                )
+                told = _merit(merit, *grown.min(axis=0))
+                if float(told.max()) > top + GAINED * abs(top):
+                    trial = cloud[int(told.argmax())]
+                    break
+                step *= SHORTER
+        return best
+
+
+def _merit(merit: Any, in_a: Any, in_b: Any) -> Any:
+    """Of depths in both; that of a point outside one is how far it is outside."""
+    least = np.minimum(in_a, in_b)
+    return np.where(least > 0.0, merit(in_a, in_b), least)
 
 
 def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Overlap | None:
-    """By ascent of the lesser depth from world points; None if no ball is deeper than `least`.
+    """By ascent from world points and some of the box around both; None if no ball is deeper than
+    `least`.
 
-    A local maximum, or what was found before `left` evaluations were spent: the ball is inside both
+    Local maxima, or what was found before `left` evaluations were spent: the ball is inside both
     solids, but another one may be larger.
     """
-    best, where, ascent = -np.inf, starts[0], Ascent(pair, left)
-    for start in starts:
-        depth, point = _climbed(ascent, start, FIRST_STEP)
-        if depth > best:
-            best, where = depth, point
-        if ascent.left <= 0:
+    ascent = Ascent(pair, left)
+    spots = [*starts, *_lattice(pair)]
+    looks = []
+    for spot in spots:
+        looks.append(ascent.look(spot)[:, 3])
+        if ascent.left <= left // 2:
             break
-    return Overlap(where, best, 2.0 * best) if best > least else None
+    in_a, in_b = np.array(looks).T
+    tops = []
+    for merit in (np.minimum, np.add):
+        order = np.argsort(-_merit(merit, in_a, in_b), kind="stable")[:STARTS]
+        ends = [ascent.climbed(spots[k], merit, FIRST_STEP * ascent.size) for k in order]
+        tops += ends
+    found = [ascent.proven(end) for end in tops]
+    ball, both = max(found, key=lambda x: x.radius), max(found, key=lambda x: x.depth)
+    return ball._replace(depth=both.depth) if ball.radius > least else None
+
+
+def _lattice(pair: PlacedPair) -> Array:
+    """World points of the box around both solids."""
+    ways = np.vstack([np.eye(3), -np.eye(3)])
+    a = pair.a.heights(ways @ pair.ra) + ways @ pair.pa
+    b = pair.b.heights(ways @ pair.rb) + ways @ pair.pb
+    high = np.minimum(a, b)
+    return np.asarray(-high[3:] + LATTICE * (high[:3] + high[3:]))
 
 
 def ball_beside(pair: PlacedPair, starts: Array, least: float, left: int) -> Overlap | None:
     """The same from the first point inside both that is found beside common points of the
     boundaries."""
     ascent = Ascent(pair, left)
-    for start in starts:
-        depth, point = _beside(ascent, start, least)
-        if depth > least:
-            return Overlap(point, depth, 2.0 * depth)
-    return None
-
-
-def _beside(ascent: Ascent, start: Array, least: float) -> tuple[float, Array]:
-    """From a point inside both that is sought beside a common point of the boundaries."""
     ways = WAYS / np.linalg.norm(WAYS, axis=1)[:, None]
-    for look in LOOKS:
-        spots = start + look * ascent.size * ways
-        depths = [min(ascent.depths(spot)[:2]) for spot in spots if ascent.left > 0]
-        k = int(np.argmax(depths)) if depths else 0
-        if depths and depths[k] > least:
-            return _climbed(ascent, spots[k], look)
-    return -np.inf, start
-
-
-def _climbed(ascent: Ascent, start: Array, first: float) -> tuple[float, Array]:
-    point, (da, db, ga, gb) = start, ascent.depths(start)
-    step = first * ascent.size
-    for _ in range(MOST_STEPS):
-        if step <= LAST_CLIMB * ascent.size or ascent.left <= 0:
-            break
-        worse, other = (ga, gb) if da <= db else (gb, ga)
-        ways = [worse, worse + other, worse - (worse @ other) * other]
-        for way in ways:
-            length = float(np.linalg.norm(way))
-            if length < LEADS_NOWHERE:
-                continue
-            trial = point + step * way / length
-            told = ascent.depths(trial)
-            if min(told[:2]) > min(da, db):
-                point, (da, db, ga, gb) = trial, told
-                break
-        else:
-            step *= 0.4
-    return min(da, db), point
+    for start in starts:
+        for look in LOOKS:
+            spots = start + look * ascent.size * ways
+            depths = [ascent.proven(spot).radius for spot in spots if ascent.left > 0]
+            k = int(np.argmax(depths)) if depths else 0
+            if depths and depths[k] > least:
+                top = ascent.climbed(spots[k], np.minimum, look * ascent.size)
+                ball = ascent.proven(top)
+                return ball if ball.radius > depths[k] else ascent.proven(spots[k])
+    return None

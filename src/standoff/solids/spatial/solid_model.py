@@ -224,6 +224,34 @@ class SolidModel(KeepsReadOnly):
         node = self.numbers[o : o + S.NODE_REALS]
         return node[S.CENTRE : S.CENTRE + 3], float(np.linalg.norm(node[S.HALF : S.HALF + 3]))
 
+    @property
+    def has_end(self) -> bool:
+        """Is it no half-space?"""
+        return True
+
+    @cached_property
+    def axes(self) -> Array:
+        """(n, 3) unit vectors, own frame: axes of its faces, of planes the normals, each once."""
+        at, found = S.NATURAL_REALS + 6, {}
+        for leaf in self.leaves:
+            if leaf.kind >= 0:
+                way = leaf.reals[at : at + 3]
+                near = tuple(np.round(way, 6) + 0.0)
+                found.setdefault(max(near, tuple(0.0 - x for x in near)), way)
+        return np.reshape(list(found.values()), (-1, 3))
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        """Of its leaves: centres (n, 3), and half the sides of boxes around them (n, 3, 3)."""
+        arms = [leaf.half[:, None] * leaf.axes for leaf in self.leaves]
+        return np.array([leaf.centre for leaf in self.leaves]), np.array(arms)
+
+    def heights(self, ways: Array) -> Array:
+        """How far it reaches along unit vectors (n, 3), own frame, at most, lengths (n,)."""
+        centres, arms = self._boxes
+        reach = np.abs(arms.reshape(-1, 3) @ ways.T).reshape(len(arms), 3, -1).sum(axis=1)
+        return np.asarray((centres @ ways.T + reach).max(axis=0))
+
     def __repr__(self) -> str:
         b = self.boundary
         return (
