@@ -166,7 +166,7 @@ def depths_beside(pair: PlacedPair, point: Array, about: float) -> list[tuple[fl
         (pair.a, pair.in_a(point), pair.ra),
         (pair.b, pair.in_b(point), pair.rb),
     ):
-        depth, nearest, _ = depth_beside(solid, own, about)
+        depth, nearest = depth_beside(solid, own, about)
         away = turn @ (own - nearest if depth > 0.0 else nearest - own)
         found.append((depth, away / max(float(np.linalg.norm(away)), LEAST_LENGTH)))
     return found

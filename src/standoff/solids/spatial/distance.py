@@ -261,10 +261,7 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     if way < np.inf:
         told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
         return answer_of(pair, met, places, told)
-    left, met = (
-        around(pair, near),
-        replace(found, lower=-float(np.linalg.norm(short_way(pair, gap_of)))),
-    )
+    left = around(pair, near)
     return answer_of(pair, met, places, Told(Status.WITHIN, open=left, n_open=len(left)))
 
 

@@ -11,12 +11,13 @@ import numpy as np
 from standoff.bodies.hulls.fewer_points import directions
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Overlap
+from standoff.solids.spatial.minimum import evaluations_of
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.tolerances import LAST_CLIMB, LEAST_LENGTH, LOOKS
 
 # Of the box around both: where depths are looked at first.
-LATTICE = np.array(list(product((1.0 / 6.0, 0.5, 5.0 / 6.0), repeat=3)))
+LATTICE = np.array(list(product((0.5, 1.0 / 6.0, 5.0 / 6.0), repeat=3)))
 # Points of the unit ball, beside its centre, at which slopes are followed.
 CLOUD = np.vstack([r * directions(64) for r in (1.0, 0.5, 0.25, 0.1)])
 # Starts of an ascent, and steps of one; of a depth: what a step is to gain.
@@ -47,8 +48,9 @@ class Ascent:
         pair, rows = self.pair, np.zeros((2, 7))
         sides = ((pair.a, pair.in_a(point), pair.ra), (pair.b, pair.in_b(point), pair.rb))
         for row, (solid, own, turn) in zip(rows, sides, strict=True):
-            depth, nearest, spent = depth_beside(solid, own, pair.size)
-            self.left -= spent
+            counts = np.zeros(8, dtype=np.int64)
+            depth, nearest = depth_beside(solid, own, pair.size, counts)
+            self.left -= evaluations_of(counts)
             away = turn @ (own - nearest) * (1.0 if depth > 0.0 else -1.0)
             length = float(np.linalg.norm(away))
             row[:3], row[3] = point, length if depth > 0.0 else -length
@@ -64,6 +66,8 @@ class Ascent:
         best, top, slopes = start, -np.inf, np.zeros((0, 2, 7))
         trial = start
         for _ in range(MOST_STEPS):
+            if self.left <= 0:
+                break
             seen = self.look(trial)
             slopes = np.concatenate([slopes[-MOST_SLOPES:], seen[None]])
             value = _merit(merit, *seen[:, 3])
@@ -73,7 +77,7 @@ class Ascent:
                 best, top = (trial, value) if value > top else (best, top)
                 step *= SHORTER
             while True:
-                if step <= LAST_CLIMB * self.size or self.left <= 0:
+                if step <= LAST_CLIMB * self.size:
                     return best
                 cloud = best + step * CLOUD
                 near = slopes[np.linalg.norm(slopes[:, 0, :3] - best, axis=1) <= BELIEVED * step]
@@ -102,7 +106,8 @@ def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Ove
     solids, but another one may be larger.
     """
     ascent = Ascent(pair, left)
-    spots = [*starts, *_lattice(pair)]
+    middle, *others = _lattice(pair)
+    spots = [middle, *starts, *others]
     looks = []
     for spot in spots:
         looks.append(ascent.look(spot)[:, 3])

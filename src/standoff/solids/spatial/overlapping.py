@@ -70,8 +70,10 @@ def told_overlapping(
     if way is not None and gap_of(pair.moved(way), 0.5 * spare):
         overlap = overlap._replace(parting=way)
     overlap = overlap._replace(depth=max(overlap.depth, *(_deep(pair, p) for p in places)))
-    overlap = closed(pair, overlap, places, sought, gap_of)
-    rows = [region.row for region in regions]
+    overlap = closed(pair, overlap, places[0], sought, gap_of)
+    # what is deeper than a way that parts the solids is another way out of a region
+    most = max(overlap.most, -places[-1].distance)
+    rows = [region.row for region in regions if -region.place.distance <= most]
     if minima is None:
         rows = rows[:1]
     else:
@@ -80,19 +82,23 @@ def told_overlapping(
 
 
 def closed(
-    pair: PlacedPair, overlap: Overlap, places: Sequence[Place], sought: Sought, gap_of: GapOf
+    pair: PlacedPair, overlap: Overlap, place: Place, sought: Sought, gap_of: GapOf
 ) -> Overlap:
     """An overlap whose bounds are brought near to each other, where they are not: by a shorter way
-    out, by a depth elsewhere than at the places, the deepest first, and by what holds all round."""
-    if overlap.most > NEAR_BOUNDS * overlap.depth:
+    out, by a depth elsewhere than at its deepest place, and by what holds all round."""
+
+    def is_far() -> bool:
+        return overlap.most > NEAR_BOUNDS * max(overlap.depth, -place.distance)
+
+    if is_far():
         overlap = overlap._replace(parting=short_way(pair, gap_of, overlap.parting))
-    if overlap.most > NEAR_BOUNDS * overlap.depth:
-        starts = places[0].point_a[None]
+    if is_far():
+        starts = place.point_a[None]
         ball = common_ball(pair, starts, sought.tolerance, sought.deadline)
         if ball and ball.depth > overlap.depth:
             overlap = ball._replace(parting=overlap.parting)
-    if overlap.most > NEAR_BOUNDS * overlap.depth:
-        about = (1.0 + PARTED_SPARE) * max(overlap.depth, -places[0].distance)
+    if is_far():
+        about = (1.0 + PARTED_SPARE) * max(overlap.depth, -place.distance)
         overlap = overlap._replace(held=depth_bound(pair, sought.tolerance, about))
     return overlap
 
