@@ -15,8 +15,11 @@ Gap = tuple[float, Array]
 """How far two solids are proven to be apart, and the normal there."""
 MOST_DRAWN = 8
 """Queries by which a way is drawn in."""
-NEARLY = 0.999
-"""Of a gap: how much of it B is moved back."""
+NEARLY = 1e-3
+"""Of a length: how much farther B is moved, and how much less than a gap it is moved back."""
+MOST_STARTS = 3
+OTHER_WAY = 0.9
+"""Cosine of the angle of two ways below which both are tried."""
 GAINED = 5e-3
 """Of a way's length: what is to be gained, at least, to go on."""
 
@@ -57,31 +60,56 @@ def least_way_out(normals: Array, depths: Array) -> Array | None:
     return np.asarray(-scale * rest[:3] / rest[3])
 
 
-def drawn_in(way: Array, gap_of: Callable[[Array], Gap | None]) -> Array | None:
+def shortest(
+    ways: Array, lengths: Array, gap_of: Callable[[Array], Gap | None], known: Array | None = None
+) -> Array:
+    """A short vector by which B is proven to be parted from A.
+
+    Parameters
+    ----------
+    ways, lengths : (n, 3) and (n,) arrays
+        Unit vectors, and how far B is to be moved along each until a plane is known to be between.
+    gap_of : callable
+        How far the solids are apart with B moved by a vector; None where it is not proven.
+    known : (3,) array, optional
+        One that parts them.
+    """
+    best = lengths.min() * ways[lengths.argmin()] if known is None else known
+    tried: list[Array] = []
+    for k in np.argsort(lengths, kind="stable"):
+        if len(tried) < MOST_STARTS and all(ways[k] @ other < OTHER_WAY for other in tried):
+            tried.append(ways[k])
+            way = _drawn_in((1.0 + NEARLY) * lengths[k] * ways[k], gap_of)
+            if way is not None and np.linalg.norm(way) < np.linalg.norm(best):
+                best = way
+    return np.asarray(best)
+
+
+def _drawn_in(way: Array, gap_of: Callable[[Array], Gap | None]) -> Array | None:
     """A vector by which B is proven to be parted from A, drawn in from one that is longer; None
     where that one is not proven to part them.
 
     If the gap after a move is d, B parts as well by what is d shorter, as nothing is met on the
-    way. From there the nearest point of the plane of contact is tried, and where that does not part
-    them, what is half way to it.
+    way. From there the nearest point of the plane of contact is tried; where that does not part
+    them B is drawn in further, and then what is half way is tried.
     """
-    best: Array | None = None
-    for _ in range(MOST_DRAWN):
+    best, is_new = way, False
+    for k in range(MOST_DRAWN):
         told = gap_of(way)
         if told is None:
-            if best is None:
+            if k == 0:
                 return None
-            way = 0.5 * (way + best)
+            way, is_new = (best if is_new else 0.5 * (way + best)), False
             continue
         gap, normal = told
-        length = float(np.linalg.norm(way))
-        drawn = max(0.0, 1.0 - NEARLY * gap / length) * way
-        gained = best is None or np.linalg.norm(drawn) < (1.0 - GAINED) * np.linalg.norm(best)
-        best = drawn if best is None or np.linalg.norm(drawn) < np.linalg.norm(best) else best
-        foot = (drawn @ normal) * normal * (1.0 + GAINED)
-        if not gained or np.linalg.norm(foot) > (1.0 - GAINED) * np.linalg.norm(best):
+        length, before = float(np.linalg.norm(way)), float(np.linalg.norm(best))
+        drawn = max(0.0, 1.0 - (1.0 - NEARLY) * gap / length) * way
+        if np.linalg.norm(drawn) < before:
+            best, is_new = drawn, True
+        if k and np.linalg.norm(best) > (1.0 - GAINED) * before:
             break
-        way = foot
+        foot = (1.0 + GAINED) * (drawn @ normal) * normal
+        way = foot if np.linalg.norm(foot) < (1.0 - GAINED) * np.linalg.norm(best) else best
     return best
 
 

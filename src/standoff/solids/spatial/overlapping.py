@@ -98,7 +98,7 @@ def closed(
         if ball and ball.depth > overlap.depth:
             overlap = ball._replace(parting=overlap.parting)
     if is_far():
-        about = (1.0 + PARTED_SPARE) * max(overlap.depth, -place.distance)
+        about = max(overlap.depth, -place.distance)
         overlap = overlap._replace(held=depth_bound(pair, sought.tolerance, about))
     return overlap
 

@@ -8,41 +8,28 @@ import numpy as np
 
 from standoff.bodies.hulls.fewer_points import directions
 from standoff.geometry.validation import Array
-from standoff.solids.parting import Gap, drawn_in
+from standoff.solids.parting import NEARLY, Gap, shortest
 from standoff.solids.spatial.pair import PlacedPair
-from standoff.solids.spatial.tolerances import PARTED_SPARE, PROOF_ROUNDING
+from standoff.solids.spatial.tolerances import PROOF_ROUNDING
 
 GapOf = Callable[[PlacedPair, float], Gap | None]
 """How far a pair is apart, proven to a tolerance, and the normal there; None where it is not."""
 ALL_ROUND = 96
 """Directions that are looked along, beside those of the solids' faces."""
-MOST_STARTS = 3
-APART = 0.9
-"""Cosine of the angle of two ways below which both are tried."""
 
 
 def short_way(pair: PlacedPair, gap_of: GapOf, known: Array | None = None) -> Array:
-    """A world vector: B, moved by it, is proven to be apart from A. It is at most as long as one
-    that is `known`.
-
-    There is always one past the boxes of the leaves; from the shortest of these, B is drawn in
-    until it touches A.
-    """
+    """A world vector: B, moved by it, is proven to be apart from A. It is no longer than one that
+    is `known`."""
     ways = _ways(pair)
     spare = 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.relative[9:])))
     lengths = pair.a.heights(ways @ pair.ra) + pair.b.heights(-ways @ pair.rb) + spare
     lengths -= ways @ (pair.pb - pair.pa)
-    best = lengths.min() * ways[lengths.argmin()] if known is None else known
-    tried: list[Array] = []
-    for k in np.argsort(lengths, kind="stable"):
-        if len(tried) < MOST_STARTS and all(ways[k] @ other < APART for other in tried):
-            tried.append(ways[k])
-            start = (1.0 + PARTED_SPARE) * lengths[k] * ways[k]
-            tolerance = 0.5 * PARTED_SPARE * float(lengths[k])
-            way = drawn_in(start, lambda by, to=tolerance: gap_of(pair.moved(by), to))  # type: ignore[misc]
-            if way is not None and np.linalg.norm(way) < np.linalg.norm(best):
-                best = way
-    return np.asarray(best)
+
+    def gap_by(way: Array) -> Gap | None:
+        return gap_of(pair.moved(way), 0.5 * NEARLY * float(np.linalg.norm(way)))
+
+    return shortest(ways, lengths, gap_by, known)
 
 
 def _ways(pair: PlacedPair) -> Array:
