@@ -12,7 +12,7 @@ from standoff.bodies.hulls.fewer_points import directions
 from standoff.geometry.validation import Array
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.minimum import evaluations_of
-from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.tolerances import LAST_CLIMB, LEAST_LENGTH, LOOKS
 
@@ -29,6 +29,9 @@ MOST_SLOPES, BELIEVED = 24, 4.0
 WAYS = np.array([w for w in product((-1.0, 0.0, 1.0), repeat=3) if any(w)])
 
 
+UNKNOWN = np.zeros((0, 2, 7))
+
+
 class Ascent:
     """Depths of world points in both solids, for as long as evaluations are left."""
 
@@ -43,13 +46,16 @@ class Ascent:
         self.left -= spent
         return Overlap(point, min(da, db), da + db if min(da, db) > 0.0 else min(da, db))
 
-    def look(self, point: Array) -> Array:
-        """(2, 7): of each solid the point, about how deep it is inside, and the slope."""
+    def look(self, point: Array, known: Array) -> Array:
+        """(2, 7): of each solid the point, about how deep it is inside, and the slope; from what is
+        known of others (n, 2, 7)."""
         pair, rows = self.pair, np.zeros((2, 7))
+        feet = known[..., :3] - known[..., 3:4] * known[..., 4:]
+        least = np.linalg.norm(point - feet, axis=2).min(axis=0, initial=pair.size)
         sides = ((pair.a, pair.in_a(point), pair.ra), (pair.b, pair.in_b(point), pair.rb))
-        for row, (solid, own, turn) in zip(rows, sides, strict=True):
+        for row, about, (solid, own, turn) in zip(rows, least.tolist(), sides, strict=True):
             counts = np.zeros(8, dtype=np.int64)
-            depth, nearest = depth_beside(solid, own, pair.size, counts)
+            depth, nearest = depth_beside(solid, own, about, counts)
             self.left -= evaluations_of(counts)
             away = turn @ (own - nearest) * (1.0 if depth > 0.0 else -1.0)
             length = float(np.linalg.norm(away))
@@ -57,33 +63,30 @@ class Ascent:
             row[4:] = away / max(length, LEAST_LENGTH)
         return rows
 
-    def climbed(self, start: Array, merit: Any, step: float) -> Array:
+    def climbed(self, start: Array, merit: Any, step: float, known: Array = UNKNOWN) -> Array:
         """Where the merit of both depths is the greatest near a point: the lesser, or the sum.
 
         About a point each depth is the least of what it grows to by the slopes that were found; the
         next point is the best of some in a ball by these.
         """
-        best, top, slopes = start, -np.inf, np.zeros((0, 2, 7))
-        trial = start
+        best, top, slopes, trial = start, -np.inf, known, start
         for _ in range(MOST_STEPS):
             if self.left <= 0:
                 break
-            seen = self.look(trial)
+            seen = self.look(trial, slopes)
             slopes = np.concatenate([slopes[-MOST_SLOPES:], seen[None]])
-            value = _merit(merit, *seen[:, 3])
-            if value > top + GAINED * abs(top) or top == -np.inf:
+            value = float(_merit(merit, *seen[:, 3]))
+            gained = value > top + GAINED * abs(top) or top == -np.inf
+            if value > top:
                 best, top = trial, value
-            else:
-                best, top = (trial, value) if value > top else (best, top)
-                step *= SHORTER
+            step *= 1.0 if gained else SHORTER
             while True:
                 if step <= LAST_CLIMB * self.size:
                     return best
                 cloud = best + step * CLOUD
                 near = slopes[np.linalg.norm(slopes[:, 0, :3] - best, axis=1) <= BELIEVED * step]
-                grown = near[:, :, 3, None] + np.einsum(
-                    "kjc,knjc->kjn", near[:, :, 4:], (cloud[None, :, None] - near[:, None, :, :3])
-                )
+                ways = cloud[None, :, None] - near[:, None, :, :3]
+                grown = near[:, :, 3, None] + np.einsum("kjc,knjc->kjn", near[:, :, 4:], ways)
                 told = _merit(merit, *grown.min(axis=0))
                 if float(told.max()) > top + GAINED * abs(top):
                     trial = cloud[int(told.argmax())]
@@ -110,7 +113,7 @@ def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Ove
     spots = [middle, *starts, *others]
     looks = []
     for spot in spots:
-        looks.append(ascent.look(spot)[:, 3])
+        looks.append(ascent.look(spot, UNKNOWN)[:, 3])
         if ascent.left <= left // 2:
             break
     in_a, in_b = np.array(looks).T
@@ -122,6 +125,15 @@ def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Ove
     found = [ascent.proven(end) for end in tops]
     ball, both = max(found, key=lambda x: x.radius), max(found, key=lambda x: x.depth)
     return ball._replace(depth=both.depth) if ball.radius > least else None
+
+
+def deepened(pair: PlacedPair, place: Place, left: int) -> Overlap:
+    """The two balls about a point near to a place of overlap."""
+    ascent, known = Ascent(pair, left), np.zeros((1, 2, 7))
+    known[0, :, :3] = place.point_a, place.point_b
+    known[0, :, 3] = pair.size  # it says where the boundaries are, and bounds no depth
+    middle = 0.5 * (place.point_a + place.point_b)
+    return ascent.proven(ascent.climbed(middle, np.add, -place.distance, known))
 
 
 def _lattice(pair: PlacedPair) -> Array:

@@ -24,7 +24,7 @@ from standoff.solids.spatial.contact import (
 )
 from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.minimum import Found, Sought
-from standoff.solids.spatial.overlap import common_ball
+from standoff.solids.spatial.overlap import common_ball, deepened
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
@@ -90,6 +90,9 @@ def closed(
     def is_far() -> bool:
         return overlap.most > NEAR_BOUNDS * max(overlap.depth, -place.distance)
 
+    if overlap.most > NEAR_BOUNDS * overlap.depth:
+        both = deepened(pair, place, sought.deadline)
+        overlap = overlap._replace(depth=max(overlap.depth, both.depth))
     if is_far():
         overlap = overlap._replace(parting=short_way(pair, gap_of, overlap.parting))
     if is_far():

@@ -130,13 +130,11 @@ def least_of_boxes(a: Array, b: Array) -> float:
     low = (a[:, None, 0] - b[None, :, 1]).reshape(-1, 3)
     high = (a[:, None, 1] - b[None, :, 0]).reshape(-1, 3)
     cuts = [np.unique(np.r_[-np.inf, low[:, k], high[:, k], np.inf]) for k in range(3)]
-    least = np.inf
     cells = np.array(list(product(*(range(len(c) - 1) for c in cuts))))
     first, last = (np.array([cuts[k][cells[:, k] + e] for k in range(3)]).T for e in (0, 1))
     covered = ((low <= first[:, None]) & (high >= last[:, None])).all(axis=2).any(axis=1)
     nearest = np.clip(0.0, first, last)
-    least = float(np.linalg.norm(nearest[~covered], axis=1).min())
-    return least
+    return float(np.linalg.norm(nearest[~covered], axis=1).min())
 
 
 def of_unions(rng: Rng, name: str, other: str) -> Drawn:
