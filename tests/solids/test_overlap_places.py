@@ -257,9 +257,9 @@ def test_a_deadline_ends_the_ascent_of_a_ball(monkeypatch: pytest.MonkeyPatch) -
     looks: list[int] = []
     look = Ascent.look
 
-    def counted(ascent: Ascent, point: Array) -> Array:
+    def counted(ascent: Ascent, point: Array, known: Array) -> Array:
         before = ascent.left
-        told = look(ascent, point)
+        told = look(ascent, point, known)
         looks.append(before - ascent.left)
         return told
 

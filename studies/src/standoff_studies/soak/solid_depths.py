@@ -1,6 +1,6 @@
 """``python -m standoff_studies.soak.solid_depths``: bounds of the depth of solids that overlap.
 
-Block k of a seed draws poses of one of 20 pairs, always the same. The least translation that parts
+Block k of a seed draws poses of one of 22 pairs, always the same. The least translation that parts
 them is known: of unions of boxes along common axes by all cells between their faces, of convex
 polytopes by their facets and edges, of balls, drums and pins in closed form; of parts that are
 turned against each other an adversary looks for a translation that parts them and is shorter than
@@ -23,8 +23,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import standoff as so
+from standoff.geometry.curves import Line
 from standoff.geometry.validation import Array
-from standoff.solids import Solid, SolidProximity, distance
+from standoff.solids import PlanarSolid, Solid, SolidProximity, distance
 from standoff.tracking.status import Status
 from standoff_studies.soak import blocks, flush_depths, solid_parts
 
@@ -36,6 +37,8 @@ SHALLOWEST = 1e-2
 """Of B's size: overlaps that are drawn are at least so deep."""
 LATTICE = 0.25
 """Length: half of the shifts of boxes are multiples of it, so that faces are flush."""
+LONG = 1e6
+"""Length, far more than any: of what has no ends."""
 TRIED, ROUNDS, NEXT = 400, 4, 10
 """Translations that the adversary tries at once, how often, and how many it goes on from."""
 
@@ -148,6 +151,27 @@ def of_unions(rng: Rng, name: str, other: str) -> Drawn:
         least = least_of_boxes(a, b + shift)
         if least > SHALLOWEST * union(other).size and not _inside(a, b + shift):
             return Drawn(union(name), union(other), np.eye(3), shift, least)
+
+
+@cache
+def flat(name: str) -> PlanarSolid:
+    ends = [np.array([*p, 0.0], dtype=float) for p in UNIONS[name][0]]
+    sides = zip(ends, ends[1:] + ends[:1], strict=True)
+    return PlanarSolid.from_loops([[Line(p, q) for p, q in sides]])
+
+
+def of_flat_unions(rng: Rng, name: str, other: str) -> Drawn:
+    """The outlines of two unions of boxes, as solids in the plane."""
+    a, b = (np.array(UNIONS[each][2], dtype=float) for each in (name, other))
+    a[:, 0, 2], a[:, 1, 2] = -LONG, LONG
+    while True:
+        shift = np.append(rng.uniform(-3.0, 3.0, 2), 0.0)
+        shift = np.where(rng.random(3) < 0.5, np.round(shift / LATTICE) * LATTICE, shift)
+        least = least_of_boxes(a, b + shift)
+        if least > SHALLOWEST * flat(other).size and not _inside(
+            a[..., :2], b[..., :2] + shift[:2]
+        ):
+            return Drawn(flat(name), flat(other), np.eye(3), shift, least)
 
 
 def _inside(a: Array, b: Array) -> bool:
@@ -283,6 +307,19 @@ def _half_of(solid: Solid) -> float:
     return float(np.asarray(solid.boundary.vertex_points)[:, 0].max())
 
 
+def random_pose(rng: Rng, flat: bool) -> Array:
+    """(4, 4): any, or one in the plane."""
+    pose = np.eye(4)
+    turn = (
+        Rotation.from_euler("z", rng.uniform(0.0, 6.3))
+        if flat
+        else Rotation.random(random_state=rng)
+    )
+    pose[:3, :3], pose[:3, 3] = turn.as_matrix(), rng.normal(size=3)
+    pose[2, 3] *= not flat
+    return pose
+
+
 PAIRS: tuple[Callable[[Rng], Drawn], ...] = (
     partial(of_unions, name="block", other="cube"),
     partial(of_unions, name="slab", other="bar"),
@@ -298,6 +335,8 @@ PAIRS: tuple[Callable[[Rng], Drawn], ...] = (
     partial(of_polytopes, one=flush_depths._box, two=flush_depths._box),
     partial(of_polytopes, one=flush_depths._box, two=flush_depths._hull),
     partial(of_polytopes, one=flush_depths._prism, two=flush_depths._hull),
+    partial(of_flat_unions, name="elbow", other="channel"),
+    partial(of_flat_unions, name="stairs", other="bar"),
     of_balls,
     of_ball_and_block,
     of_drums,
@@ -341,9 +380,7 @@ def judge_block(number: int, seed: int, poses: int = BLOCK) -> tuple[Verdict, li
     verdict, lines = Verdict(), []
     for k in range(poses):
         drawn = PAIRS[number % len(PAIRS)](rng)
-        pose_a, inner = np.eye(4), np.eye(4)
-        pose_a[:3, :3] = Rotation.random(random_state=rng).as_matrix()
-        pose_a[:3, 3] = rng.normal(size=3)
+        pose_a, inner = random_pose(rng, isinstance(drawn.a, PlanarSolid)), np.eye(4)
         inner[:3, :3], inner[:3, 3] = drawn.turn, drawn.shift
         begun = time.perf_counter()
         told = distance(drawn.a, drawn.b, pose_a, pose_a @ inner)
