@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 
 PointPair = tuple[Array, Array]
 """A point of A and one of B, world axes."""
+NEAR_BOUNDS = 1.25
+"""Times what is proven of a depth: if a translation no longer than this parts the solids, both
+bounds are near enough to each other."""
 MOST_OPEN = 64
 """Open pairs that an answer lists."""
 
@@ -116,7 +119,27 @@ class Overlap(NamedTuple):
     def most(self) -> float:
         """How deep the overlap is at most: the length of `parting`, or `held` where that is less;
         inf where neither is known."""
-        return min(self.held, np.inf if self.parting is None else float(norm(self.parting)))
+        return min(self.held, self.way)
+
+    @property
+    def way(self) -> float:
+        """The length of `parting`; inf where there is none."""
+        return np.inf if self.parting is None else float(norm(self.parting))
+
+    @property
+    def reason(self) -> str:
+        """Why what is told at least and at most of a depth is not one, in words; empty if it is."""
+        if self.held < self.way < np.inf:
+            return (
+                f"held all round: neither boundary is deeper in the other than {self.held:.6g}, and"
+                f" the shortest way out that was found is {self.way:.6g} long"
+            )
+        if NEAR_BOUNDS * self.depth < self.way < np.inf:
+            return (
+                f"no translation shorter than {self.depth:.6g} parts them, the shortest that is "
+                f"found to is {self.way:.6g} long, and which is nearer to the least is not known"
+            )
+        return ""
 
 
 class OpenPair(NamedTuple):

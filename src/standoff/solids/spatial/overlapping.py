@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from standoff.geometry.validation import Array
 from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import BOUND
-from standoff.solids.answer import Overlap, SolidProximity
+from standoff.solids.answer import NEAR_BOUNDS, Overlap, SolidProximity
 from standoff.solids.parting import least_way_out
 from standoff.solids.spatial.contact import (
     MOST_REGIONS,
@@ -28,7 +28,7 @@ from standoff.solids.spatial.overlap import common_ball, deepened
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.spatial.tolerances import CONTACT_REACH, NEAR_BOUNDS, PARTED_SPARE
+from standoff.solids.spatial.tolerances import CONTACT_REACH, HELD_WAY, PARTED_SPARE
 from standoff.solids.spatial.way_out import GapOf, short_way
 from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
@@ -100,8 +100,8 @@ def closed(
         ball = common_ball(pair, starts, sought.tolerance, sought.deadline)
         if ball and ball.depth > overlap.depth:
             overlap = ball._replace(parting=overlap.parting)
-    if is_far():
-        about = max(overlap.depth, -place.distance)
+    about = max(overlap.depth, -place.distance)
+    if overlap.most > HELD_WAY * about:
         overlap = overlap._replace(held=depth_bound(pair, sought.tolerance, about))
     return overlap
 

@@ -46,9 +46,8 @@ asked."""
 PARTED_SPARE: Final = 1e-3
 """Relative, of the depth: how much farther than it B is moved to see whether the solids are apart;
 a distance is proven the faster the greater it is."""
-NEAR_BOUNDS: Final = 1.25
-"""Times what is proven of a depth: if a translation no longer than this parts the solids, both
-bounds are near enough to each other."""
+HELD_WAY: Final = 2.0
+"""Times the depth of the deepest place: of a way out that is shorter nothing is held all round."""
 LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 """Of the size: steps from a common point of both boundaries among which one inside both is
 sought."""

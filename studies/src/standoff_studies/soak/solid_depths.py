@@ -396,8 +396,11 @@ def _shares(drawn: Drawn, told: SolidProximity) -> tuple[tuple[float, ...], tupl
     """Of the true depth: what is proven, and the bound on the other side."""
     if told.overlap is None or not np.isfinite(drawn.least):
         return (), ()
-    true = drawn.pressed if told.overlap.held < np.inf else drawn.least
-    return (told.overlap.depth / true,), (told.overlap.most / true,)
+    if told.overlap.held < np.inf and not np.isfinite(drawn.pressed):
+        return (), ()
+    if told.overlap.held < np.inf:
+        return (told.overlap.depth / drawn.pressed,), (told.overlap.held / drawn.pressed,)
+    return (told.overlap.depth / drawn.least,), (told.overlap.way / drawn.least,)
 
 
 def main() -> None:
