@@ -237,7 +237,12 @@ def of_polytopes(rng: Rng, one: Callable[..., Any], two: Callable[..., Any]) -> 
         pose = flush_depths.Poses(turn[None], shift[None])
         n = flush_depths.directions(a, b, pose.turns)
         least = float(flush_depths.depths(a, b, pose, n).min())
-        if least > SHALLOWEST * b.size:
+        ends = b.points @ turn.T + shift
+        inside = bool(((ends @ a.normals.T).max(axis=0) < a.height(a.normals)).all())
+        around = bool(
+            ((((a.points - shift) @ turn) @ b.normals.T).max(axis=0) < b.height(b.normals)).all()
+        )
+        if least > SHALLOWEST * b.size and not (inside or around):
             break
     return Drawn(Solid(a.body), Solid(b.body), turn, shift, least)
 
