@@ -209,11 +209,12 @@ class SolidProximity(KeepsReadOnly, PlainData):
     distance : float
         Between the witness points while apart; of a solid inside the other's material the least
         wall between both boundaries; in an overlap that of the deepest place, below 0, where there
-        is one (`minima`), and at most ``-overlap.depth``.
+        is one (`minima`), within the bounds.
     lower_bound, upper_bound : float
         Proven: the true value of what ``distance`` stands for is neither less nor more. In an
         overlap no translation shorter than ``-upper_bound`` parts the solids, and one as long as
-        ``-lower_bound`` does; minus infinity where none is known that does.
+        ``-lower_bound`` does, or no boundary is deeper in the other (`Overlap.most`). In frames of
+        a tracker, which do not ask for that, the lower bound is minus infinity.
     slack : float
         How far the given boundaries may be from what they stand for, both together [length].
     point_a, point_b : (3,) arrays
