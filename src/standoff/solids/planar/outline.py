@@ -60,14 +60,6 @@ class Outline(NamedTuple):
         """(n, 2) first points of the leaves."""
         return self.leaves.reshape(-1, P.N_LEAF)[:, P.START : P.START + 2]
 
-    @property
-    def across(self) -> Array:
-        """(n, 2) unit vectors to the right of the leaves' chords, outward."""
-        rows = self.leaves.reshape(-1, P.N_LEAF)
-        along = rows[:, P.END : P.END + 2] - rows[:, P.START : P.START + 2]
-        sizes = np.linalg.norm(along, axis=1)
-        return (along[:, ::-1] * [1.0, -1.0])[sizes > 0.0] / sizes[sizes > 0.0, None]
-
     def heights(self, ways: Array) -> Array:
         """How far it reaches along unit vectors (n, 2), at most, lengths (n,)."""
         rows = self.leaves.reshape(-1, P.N_LEAF)

@@ -37,7 +37,7 @@ CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048
 MOST_SQUARES = 1200
 ALL_ROUND = 64
-"""Directions in the plane that are looked along for a way out, beside those across lines."""
+"""Directions in the plane that are looked along for a way out."""
 UNSEEN: Array = np.full(3, np.nan)
 
 
@@ -312,13 +312,10 @@ def _gap(pair: Queried, by: Array) -> Gap | None:
 def _way_out(pair: Queried) -> Array:
     """A world vector: B, moved by it, is proven to be apart from A."""
     angles = 2.0 * np.pi * np.arange(ALL_ROUND) / ALL_ROUND
-    rotations = [pair.poses[k : k + 9].reshape(3, 3)[:2, :2] for k in (0, 12)]
-    sides = (pair.a.outline.across @ rotations[0].T, pair.b.outline.across @ rotations[1].T)
-    ways = np.vstack([np.column_stack([np.cos(angles), np.sin(angles)]), sides[0], -sides[1]])
-    lengths = pair.a.outline.heights(ways @ rotations[0]) - ways @ (
-        pair.poses[21:23] - pair.poses[9:11]
-    )
-    lengths += pair.b.outline.heights(-ways @ rotations[1]) + 4.0 * pair.roundoff
+    ways, away = np.column_stack([np.cos(angles), np.sin(angles)]), pair.poses[21:23]
+    R_a, R_b = (pair.poses[k : k + 9].reshape(3, 3)[:2, :2] for k in (0, 12))
+    lengths = pair.a.outline.heights(ways @ R_a) + pair.b.outline.heights(-ways @ R_b)
+    lengths += ways @ (pair.poses[9:11] - away) + 4.0 * pair.roundoff
     return shortest(np.pad(ways, ((0, 0), (0, 1))), lengths, lambda by: _gap(pair, by))
 
 
@@ -371,11 +368,10 @@ def _overlapping(
     pair: Queried, searched: Searched, overlap: Overlap | None = None
 ) -> SolidProximity:
     ball = overlap or common_ball(pair, searched)
-    lower, distance = -np.inf, 0.0
+    way = _way_out(pair)
     if ball is not None:
-        ball = ball._replace(depth=_deepest(pair, ball), parting=_way_out(pair))
-        lower, distance = -ball.most, -ball.depth
-    bounds = lower, distance
+        ball = ball._replace(depth=_deepest(pair, ball), parting=way)
+    bounds = -float(np.linalg.norm(way)), 0.0 if ball is None else -ball.depth
     rows = distinct(pair, searched.found[:1])[:1] if len(searched.found) else ()
     pairs = _pairs(pair, np.asarray(rows))
     counts = _counts(searched.counts)

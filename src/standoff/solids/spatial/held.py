@@ -38,8 +38,6 @@ MOST_MIDDLES = 64
 LEAST_COMMON = -0.9
 # By how much a slope changes over a part, at most; a larger part is halved.
 MOST_CHANGE = 0.8
-# The same of solids that are pressed into each other: it is known.
-FINITE = 1e300
 # Boxes of potentials and points, each with one of both solids as A.
 MOST_EVALUATIONS = 2_000_000
 # The same of solids that are pressed into each other, where another bound is known.
@@ -103,6 +101,8 @@ class _Sides:
         self.pair, self.pressed, self.tolerance = pair, depth > 0.0, tolerance + 0.5 * depth
         self.near = max(BESIDE_CONTACT * pair.size, BESIDE_DEPTH * self.tolerance)
         self.packed_a = _shifted(pair.a, 0.5 * depth)
+        # a larger change only has to be known where a part that is not joined is halved
+        self.most_change = np.finfo(float).max if self.pressed else MOST_CHANGE
         self.faces_a = np.array([k for k, leaf in enumerate(pair.a.leaves) if leaf.dim == 2])
         self.centres = np.array([pair.a.leaves[k].centre for k in self.faces_a])
         self.radii = np.array([np.linalg.norm(pair.a.leaves[k].half) for k in self.faces_a])
@@ -162,11 +162,13 @@ class _Sides:
         near = self.faces_a[away <= self.radii + np.linalg.norm(half) + self.near]
         for over in self._potentials(near, middle):
             told = self._asked(leaf, box, over, near)
-            if told[0] > 0.0 and told[7] <= (FINITE if self.pressed else MOST_CHANGE):
+            if told[0] > 0.0 and told[7] <= self.most_change:
                 face = self.pair.b.leaves[leaf].feature
                 potential = _potential(self.pair.a.leaves[over]) if over >= 0 else ()
                 # all of the rectangle, moved until it is above the potential, is near to it
-                lift = float(np.linalg.norm(told[1:4] - self._middle(leaf, box)))
+                own = leaf_jet_of(self.pair.b.packed, leaf, *box.reshape(2, 2).mean(axis=1))[0]
+                on_b = self.pair.in_a(own @ self.pair.rb.T + self.pair.pb)
+                lift = float(np.linalg.norm(told[1:4] - on_b))
                 moved = self.tolerance + lift - 0.5 * self.near + 2.0 * float(np.linalg.norm(half))
                 part = _Part(
                     face, centre, half, told[1:4], told[4:7], float(told[7]), told[8] > 0.0,
@@ -196,11 +198,6 @@ class _Sides:
         first, other = box.copy(), box.copy()
         first[k + 1] = other[k] = 0.5 * (box[k] + box[k + 1])
         return first, other
-
-    def _middle(self, leaf: int, box: Array) -> Array:
-        pair, (u0, u1, v0, v1) = self.pair, box
-        own = leaf_jet_of(pair.b.packed, leaf, 0.5 * (u0 + u1), 0.5 * (v0 + v1))[0]
-        return pair.in_a(own @ pair.rb.T + pair.pb)
 
     def _extents(self, leaf: int, box: Array) -> tuple[Array, Array]:
         """(middle, half extents) of a box around a part of B, in B's frame."""

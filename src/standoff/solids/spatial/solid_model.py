@@ -230,17 +230,6 @@ class SolidModel(KeepsReadOnly):
         return True
 
     @cached_property
-    def axes(self) -> Array:
-        """(n, 3) unit vectors, own frame: axes of its faces, of planes the normals, each once."""
-        at, found = S.NATURAL_REALS + 6, {}
-        for leaf in self.leaves:
-            if leaf.kind >= 0:
-                way = leaf.reals[at : at + 3]
-                near = tuple(np.round(way, 6) + 0.0)
-                found.setdefault(max(near, tuple(0.0 - x for x in near)), way)
-        return np.reshape(list(found.values()), (-1, 3))
-
-    @cached_property
     def _boxes(self) -> tuple[Array, Array]:
         """Of its leaves: centres (n, 3), and half the sides of boxes around them (n, 3, 3)."""
         arms = [leaf.half[:, None] * leaf.axes for leaf in self.leaves]

@@ -15,13 +15,15 @@ from standoff.solids.spatial.tolerances import PROOF_ROUNDING
 GapOf = Callable[[PlacedPair, float], Gap | None]
 """How far a pair is apart, proven to a tolerance, and the normal there; None where it is not."""
 ALL_ROUND = 96
-"""Directions that are looked along, beside those of the solids' faces."""
+"""Directions that are looked along."""
 
 
 def short_way(pair: PlacedPair, gap_of: GapOf, known: Array | None = None) -> Array:
     """A world vector: B, moved by it, is proven to be apart from A. It is no longer than one that
     is `known`."""
-    ways = _ways(pair)
+    ways = directions(ALL_ROUND)
+    if not (pair.a.has_end and pair.b.has_end):
+        ways = pair.ra[None, :, 2] if pair.b.has_end else -pair.rb[None, :, 2]
     spare = 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.relative[9:])))
     lengths = pair.a.heights(ways @ pair.ra) + pair.b.heights(-ways @ pair.rb) + spare
     lengths -= ways @ (pair.pb - pair.pa)
@@ -30,11 +32,3 @@ def short_way(pair: PlacedPair, gap_of: GapOf, known: Array | None = None) -> Ar
         return gap_of(pair.moved(way), 0.5 * NEARLY * float(np.linalg.norm(way)))
 
     return shortest(ways, lengths, gap_by, known)
-
-
-def _ways(pair: PlacedPair) -> Array:
-    """World unit vectors along which B may leave A."""
-    if not (pair.a.has_end and pair.b.has_end):
-        return pair.ra[None, :, 2] if pair.b.has_end else -pair.rb[None, :, 2]
-    own = np.vstack([pair.a.axes @ pair.ra.T, pair.b.axes @ pair.rb.T])
-    return np.vstack([own, -own, directions(ALL_ROUND)])

@@ -39,6 +39,8 @@ LATTICE = 0.25
 """Length: half of the shifts of boxes are multiples of it, so that faces are flush."""
 LONG = 1e6
 """Length, far more than any: of what has no ends."""
+DRAWER = 6
+"""Polytopes of each kind that are drawn from."""
 TRIED, ROUNDS, NEXT = 400, 4, 10
 """Translations that the adversary tries at once, how often, and how many it goes on from."""
 
@@ -227,9 +229,15 @@ def shorter_way(rng: Rng, boxes: tuple[Array, ...], length: float) -> float:
     return found
 
 
+@cache
+def polytope(draw: Callable[..., flush_depths.Shape], number: int) -> tuple[Any, Solid]:
+    shape = draw(np.random.default_rng([number, 12]), 0.0)
+    return shape, Solid(shape.body)
+
+
 def of_polytopes(rng: Rng, one: Callable[..., Any], two: Callable[..., Any]) -> Drawn:
     """Two convex polytopes, which are asked as solids."""
-    a, b = one(rng, 0.0), two(rng, 0.0)
+    (a, solid), (b, other) = (polytope(each, int(rng.integers(DRAWER))) for each in (one, two))
     while True:
         turn = Rotation.random(random_state=rng).as_matrix()
         way = rng.normal(size=3)
@@ -244,7 +252,7 @@ def of_polytopes(rng: Rng, one: Callable[..., Any], two: Callable[..., Any]) -> 
         )
         if least > SHALLOWEST * b.size and not (inside or around):
             break
-    return Drawn(Solid(a.body), Solid(b.body), turn, shift, least)
+    return Drawn(solid, other, turn, shift, least)
 
 
 @cache
