@@ -237,8 +237,8 @@ class _Sides:
         if self.pressed:  # the slopes change on the way as well
             grown = np.sqrt(np.maximum(0.5 * (1.0 + least), 0.0)) - changes[None]
             apart = np.minimum(grown, grown.T) <= 4.0 / (BESIDE_DEPTH - 2.0)
-        bad = (meet & apart).any(axis=1)
-        return bad & ~np.array([p.settled and self.pressed for p in parts])
+        settled = np.array([p.settled and self.pressed for p in parts])
+        return np.asarray((meet & apart).any(axis=1) & ~settled)
 
 
 def _shifted(solid: SolidModel, by: float) -> tuple[Any, Any, Any, Any]:

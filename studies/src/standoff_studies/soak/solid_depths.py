@@ -137,7 +137,8 @@ def least_of_boxes(a: Array, b: Array) -> float:
     cuts = [np.unique(np.r_[-np.inf, low[:, k], high[:, k], np.inf]) for k in range(3)]
     cells = np.array(list(product(*(range(len(c) - 1) for c in cuts))))
     first, last = (np.array([cuts[k][cells[:, k] + e] for k in range(3)]).T for e in (0, 1))
-    covered = ((low <= first[:, None]) & (high >= last[:, None])).all(axis=2).any(axis=1)
+    within = np.all((low <= first[:, None]) & (high >= last[:, None]), axis=2)
+    covered = np.any(within, axis=1)
     nearest = np.clip(0.0, first, last)
     return float(np.linalg.norm(nearest[~covered], axis=1).min())
 
