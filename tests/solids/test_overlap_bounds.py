@@ -133,3 +133,21 @@ def test_bounds_that_are_far_from_each_other_say_why() -> None:
     assert told.upper_bound == pytest.approx(-0.4, abs=1e-6)
     if told.lower_bound < -1.0:
         assert "no translation shorter than 0.4" in told.overlap.reason
+
+
+def test_solids_that_nearly_fill_each_other_are_not_held() -> None:
+    """Neither boundary is deep in the other, and both solids are."""
+    pose = so.Pose(np.eye(3), [0.01, 0.0, 0.0])
+    pair = PlacedPair(as_model(ball(1.0)), as_model(ball(1.0)), STILL, pose)
+    assert depth_bound(pair, TOLERANCE, 0.02) == np.inf
+    told = distance(ball(1.0), ball(1.0), STILL, pose)
+    assert -2.1 <= told.lower_bound <= -1.99 <= told.upper_bound <= -1.9
+
+
+def test_a_depth_is_climbed_to() -> None:
+    """Of two elbows the least way out is along their thickness, 0.9."""
+    corners = [(0, 0), (3, 0), (3, 1), (1, 1), (1, 3), (0, 3)]
+    pose = so.Pose.exp((0.0, 0.0, 0.0), (0.2, 0.3, 0.1))
+    told = distance(prism(corners, 1.0), prism(corners, 1.0), STILL, pose)
+    assert told.lower_bound == pytest.approx(-0.9, rel=2e-3)
+    assert -0.9 <= told.upper_bound <= -0.85
