@@ -244,7 +244,7 @@ def test_an_overlap_too_deep_for_places_is_still_told() -> None:
     told = so.distance(feet(), lid(), STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
     assert told.status is Status.OVERLAPPING
     assert told.distance == -told.overlap.depth
-    assert told.lower_bound == pytest.approx(-0.8)  # the lid leaves the feet upwards
+    assert told.lower_bound == pytest.approx(-0.8, rel=2e-3)  # the lid leaves the feet upwards
     assert 0.39 < told.overlap.radius <= 0.4
     tracker = so.Tracker(feet(), lid())
     state = tracker.start(STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
