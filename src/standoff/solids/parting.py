@@ -8,20 +8,16 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.solids.tolerances import NO_WAY_OUT, PARTED_BY
+from standoff.solids.tolerances import MOVED_MORE, NO_WAY_OUT, PARTED_BY, WAY_GAIN
 
 Array = NDArray[np.float64]
 Gap = tuple[float, Array]
 """How far two solids are proven to be apart, and the normal there."""
 MOST_DRAWN = 8
 """Queries by which a way is drawn in."""
-NEARLY = 1e-3
-"""Of a length: how much farther B is moved, and how much less than a gap it is moved back."""
 MOST_STARTS = 3
 OTHER_WAY = 0.9
 """Cosine of the angle of two ways below which both are tried."""
-GAINED = 5e-3
-"""Of a way's length: what is to be gained, at least, to go on."""
 
 
 def way_out(normals: Array) -> Array | None:
@@ -79,7 +75,7 @@ def shortest(
     for k in np.argsort(lengths, kind="stable"):
         if len(tried) < MOST_STARTS and all(ways[k] @ other < OTHER_WAY for other in tried):
             tried.append(ways[k])
-            way = _drawn_in((1.0 + NEARLY) * lengths[k] * ways[k], gap_of)
+            way = _drawn_in((1.0 + MOVED_MORE) * lengths[k] * ways[k], gap_of)
             if way is not None and np.linalg.norm(way) < np.linalg.norm(best):
                 best = way
     return np.asarray(best)
@@ -103,13 +99,13 @@ def _drawn_in(way: Array, gap_of: Callable[[Array], Gap | None]) -> Array | None
             continue
         gap, normal = told
         length, before = float(np.linalg.norm(way)), float(np.linalg.norm(best))
-        drawn = max(0.0, 1.0 - (1.0 - NEARLY) * gap / length) * way
+        drawn = max(0.0, 1.0 - (1.0 - MOVED_MORE) * gap / length) * way
         if np.linalg.norm(drawn) < before:
             best, is_new = drawn, True
-        if k and np.linalg.norm(best) > (1.0 - GAINED) * before:
+        if k and np.linalg.norm(best) > (1.0 - WAY_GAIN) * before:
             break
-        foot = (1.0 + GAINED) * (drawn @ normal) * normal
-        way = foot if np.linalg.norm(foot) < (1.0 - GAINED) * np.linalg.norm(best) else best
+        foot = (1.0 + WAY_GAIN) * (drawn @ normal) * normal
+        way = foot if np.linalg.norm(foot) < (1.0 - WAY_GAIN) * np.linalg.norm(best) else best
     return best
 
 

@@ -26,14 +26,13 @@ from standoff.motion.pose import Pose
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.tolerances import SPOT_SPARE
 from standoff.solids.spatial.tree import packed_leaves
 
 HALF_SIDE = 1.25
 """Radii of the ball round the solid that half of a side is at least: points beside the solid at
 which a common ball is sought are up to 1.06 of them from its middle."""
 
-ALONG_NORMAL = 1e-15
-"""A unit vector along the normal: what its part along it is less than 1 by, from roundings."""
 TOP = 5
 """The face of a box whose normal is z."""
 
@@ -135,7 +134,7 @@ class HalfSpaceBeside(SolidModel):
 
     def heights(self, ways: Array) -> Array:
         """0 along its normal, else without end."""
-        return np.where(ways[:, 2] >= 1.0 - ALONG_NORMAL, 0.0, np.inf)
+        return np.where(ways[:, 2] >= 1.0 - SPOT_SPARE, 0.0, np.inf)
 
 
 def of_pair(own: SolidModel, pose: Pose, other: SolidModel, pose_other: Pose) -> SolidModel:

@@ -8,9 +8,9 @@ import numpy as np
 
 from standoff.bodies.hulls.fewer_points import directions
 from standoff.geometry.validation import Array
-from standoff.solids.parting import NEARLY, Gap, shortest
+from standoff.solids.parting import Gap, shortest
 from standoff.solids.spatial.pair import PlacedPair
-from standoff.solids.spatial.tolerances import PROOF_ROUNDING
+from standoff.solids.spatial.tolerances import PARTED_SPARE, PROOF_ROUNDING
 
 GapOf = Callable[[PlacedPair, float], Gap | None]
 """How far a pair is apart, proven to a tolerance, and the normal there; None where it is not."""
@@ -29,6 +29,6 @@ def short_way(pair: PlacedPair, gap_of: GapOf, known: Array | None = None) -> Ar
     lengths -= ways @ (pair.pb - pair.pa)
 
     def gap_by(way: Array) -> Gap | None:
-        return gap_of(pair.moved(way), 0.5 * NEARLY * float(np.linalg.norm(way)))
+        return gap_of(pair.moved(way), 0.5 * PARTED_SPARE * float(np.linalg.norm(way)))
 
     return shortest(ways, lengths, gap_by, known)
