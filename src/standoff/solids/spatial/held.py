@@ -42,6 +42,8 @@ MOST_CHANGE = 0.8
 MOST_EVALUATIONS = 2_000_000
 # The same of solids that are pressed into each other, where another bound is known.
 MOST_PRESSED = 250_000
+# Parts from which on none is halved because it is not joined to another one.
+MOST_PARTS = 1_000
 # Potentials that are tried for one part.
 MOST_TRIED = 6
 # What the kernel needs of work space.
@@ -120,7 +122,7 @@ class _Sides:
             if not all(self._part(*piece) for piece in waiting):
                 return False
             bad = self._not_joined()
-            if bad.any() and not self.pressed:
+            if bad.any() and not (self.pressed and len(self.parts) < MOST_PARTS):
                 return False
             split = [part.piece for k, part in enumerate(self.parts) if bad[k]]
             self.parts = [part for k, part in enumerate(self.parts) if not bad[k]]
