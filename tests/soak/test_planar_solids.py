@@ -125,7 +125,7 @@ def raised(told):
 
 def larger(told):
     ball = told.overlap._replace(radius=1.001 * told.overlap.radius + 1e-8)
-    return replace(told, overlap=ball, distance=-2.0 * ball.radius)
+    return replace(told, overlap=ball)
 
 
 BREAKS = (

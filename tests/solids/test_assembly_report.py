@@ -124,7 +124,9 @@ def test_the_page_names_and_draws_the_parts(
 
 def test_an_undecided_pair_is_told_as_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A pin that fills its hole, where it is not proven that this holds it all round."""
-    monkeypatch.setattr(spatial_distance_module, "depth_bound", lambda pair, tolerance: np.inf)
+    monkeypatch.setattr(
+        spatial_distance_module, "depth_bound", lambda pair, tolerance, depth=0.0: np.inf
+    )
     parts = {"plate": plate(8.0, 1.0, 1.0).boundary, "bolt": PARTS["bolt"], "ring": PARTS["ring"]}
     world = so.World(parts, within=10.0)
     answer = world.distances({name: PLACES[name] for name in parts})

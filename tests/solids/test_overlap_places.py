@@ -14,7 +14,7 @@ from draws import draws
 from families.solid_shapes import peg, prism, tube
 from on_first_use import OnFirstUse
 from standoff.solids import Solid, SolidProximity
-from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.overlap import Ascent
 from standoff.tracking.status import Status
 
 Array = np.ndarray
@@ -243,7 +243,9 @@ def test_a_start_in_an_overlap_and_without_minima() -> None:
 def test_an_overlap_too_deep_for_places_is_still_told() -> None:
     told = so.distance(feet(), lid(), STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
     assert told.status is Status.OVERLAPPING
-    assert told.distance == -2.0 * told.overlap.radius
+    assert told.distance == -told.overlap.depth
+    assert told.lower_bound == pytest.approx(-0.8, rel=2e-3)  # the lid leaves the feet upwards
+    assert 0.39 < told.overlap.radius <= 0.4
     tracker = so.Tracker(feet(), lid())
     state = tracker.start(STILL, so.Pose(np.eye(3), [1.5, 0.3, 0.5]))
     _, answer = tracker.step(state, STILL, so.Pose(np.eye(3), [1.5, 0.31, 0.5]))
@@ -253,14 +255,15 @@ def test_an_overlap_too_deep_for_places_is_still_told() -> None:
 
 def test_a_deadline_ends_the_ascent_of_a_ball(monkeypatch: pytest.MonkeyPatch) -> None:
     looks: list[int] = []
-    depths_of = PlacedPair.depths
+    look = Ascent.look
 
-    def counted(pair: PlacedPair, point: Array) -> tuple[float, float, Array, Array, int]:
-        told = depths_of(pair, point)
-        looks.append(told[4])
+    def counted(ascent: Ascent, point: Array, known: Array) -> Array:
+        before = ascent.left
+        told = look(ascent, point, known)
+        looks.append(before - ascent.left)
         return told
 
-    monkeypatch.setattr(PlacedPair, "depths", counted)
+    monkeypatch.setattr(Ascent, "look", counted)
     pose = so.Pose(np.eye(3), [1.5, 0.3, 0.5])
     whole = so.distance(feet(), lid(), STILL, pose)
     spent = sum(looks)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from standoff.clearance.report import Report, Row
+from standoff.clearance.report import Report, Row, reason_of
 from standoff.clearance.verdicts import touching_tolerance
 from standoff.wording import printable
 
@@ -74,6 +74,7 @@ def row_facts(row: Row) -> dict[str, Any]:
         "verdict": row.verdict.name,
         **{name: getattr(answer, name) for name in ANSWERED},
         "in_cavity": in_cavity(row),
+        "bounds_reason": reason_of(answer) or None,
         "certified": not row.nearest.uncertified,
         "uncertified_frames": row.nearest.uncertified,
         "uncertified_as": [status.name for status in row.nearest.statuses],

@@ -312,15 +312,22 @@ def _not_allowed(fit: Fit, nearest: Nearest) -> str:
     (low, high), tolerance = fit.gap, touching_tolerance(nearest.answer)
     if low - tolerance <= lower and upper <= high + tolerance:
         return ""
+    why = reason_of(nearest.answer)
     if fit.contact:
-        return f"up to {at_most(-lower)} deep, and {-low:g} is allowed"
+        return f"up to {at_most(-lower)} deep, and {-low:g} is allowed{why and f' ({why})'}"
     if upper < low - tolerance:
         told = f"less than is allowed: at most {at_most(upper)}"
     elif lower > high + tolerance:
         told = f"more than is allowed: at least {at_least(lower)}"
     else:
         told = f"not proven to be what is allowed: {at_least(lower)} to {at_most(upper)}"
-    return f"a gap {told}, and {fit.allowance()} is meant"
+    return f"a gap {told}, and {fit.allowance()} is meant{why and f' ({why})'}"
+
+
+def reason_of(answer: PairAnswer | SolidPairAnswer) -> str:
+    """Return why the bounds of an overlap are far from each other, in words, or nothing."""
+    overlap = getattr(answer, "overlap", None)
+    return overlap.reason if overlap is not None else ""
 
 
 def gap_text(answer: PairAnswer | SolidPairAnswer, digits: int = 6) -> str:

@@ -103,6 +103,10 @@ def _solid_lines(scene: Scene, answer: SolidProximity) -> list[str]:
         )
         least = f"no translation shorter than {at_least(answer.overlap.depth)} {unit} parts them"
         lines.append(line("depth", least))
+        if answer.overlap.way < np.inf:
+            lines.append(line("way out", f"one of {at_most(answer.overlap.way)} {unit} does"))
+        if answer.overlap.reason:
+            lines.append(line("bounds", answer.overlap.reason))
     return lines
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.linalg import norm
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
@@ -20,6 +21,9 @@ Array = NDArray[np.float64]
 
 PointPair = tuple[Array, Array]
 """A point of A and one of B, world axes."""
+NEAR_BOUNDS = 1.25
+"""Times what is proven of a depth: if a translation no longer than this parts the solids, both
+bounds are near enough to each other."""
 MOST_OPEN = 64
 """Open pairs that an answer lists."""
 
@@ -98,14 +102,44 @@ class Overlap(NamedTuple):
     depth : float
         No translation shorter than this parts the solids: twice the radius, or more.
     parting : (3,) array, optional
-        A vector, world axes: B, moved by it, is proven to be apart from A. None where that was not
-        asked, or is not proven.
+        A vector, world axes: B, moved by it, is proven to be apart from A. None in frames, which
+        do not ask for it.
+    held : float
+        No point of the boundary of one, in the other, is deeper in it than this: of a pin that is
+        pressed into its bore, the interference. inf where that was not asked, or is not proven.
     """
 
     common_point: Array
     radius: float
     depth: float
     parting: Array | None = None
+    held: float = np.inf
+
+    @property
+    def most(self) -> float:
+        """How deep the overlap is at most: the length of `parting`, or `held` where that is less;
+        inf where neither is known."""
+        return min(self.held, self.way)
+
+    @property
+    def way(self) -> float:
+        """The length of `parting`; inf where there is none."""
+        return np.inf if self.parting is None else float(norm(self.parting))
+
+    @property
+    def reason(self) -> str:
+        """Why what is told at least and at most of a depth is not one, in words; empty if it is."""
+        if self.held < self.way < np.inf:
+            return (
+                f"held all round: neither boundary is deeper in the other than {self.held:.6g}, and"
+                f" the shortest way out that was found is {self.way:.6g} long"
+            )
+        if NEAR_BOUNDS * self.depth < self.way < np.inf:
+            return (
+                f"no translation shorter than {self.depth:.6g} parts them, the shortest that is "
+                f"found to is {self.way:.6g} long, and which is nearer to the least is not known"
+            )
+        return ""
 
 
 class OpenPair(NamedTuple):
@@ -175,11 +209,12 @@ class SolidProximity(KeepsReadOnly, PlainData):
     distance : float
         Between the witness points while apart; of a solid inside the other's material the least
         wall between both boundaries; in an overlap that of the deepest place, below 0, where there
-        is one (`minima`), and at most ``-overlap.depth``.
+        is one (`minima`), within the bounds.
     lower_bound, upper_bound : float
         Proven: the true value of what ``distance`` stands for is neither less nor more. In an
         overlap no translation shorter than ``-upper_bound`` parts the solids, and one as long as
-        ``-lower_bound`` does; minus infinity where none is known that does.
+        ``-lower_bound`` does, or no boundary is deeper in the other (`Overlap.most`). In frames of
+        a tracker, which do not ask for that, the lower bound is minus infinity.
     slack : float
         How far the given boundaries may be from what they stand for, both together [length].
     point_a, point_b : (3,) arrays

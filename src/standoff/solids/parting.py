@@ -8,9 +8,16 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from standoff.solids.tolerances import NO_WAY_OUT, PARTED_BY
+from standoff.solids.tolerances import MOVED_MORE, NO_WAY_OUT, PARTED_BY, WAY_GAIN
 
 Array = NDArray[np.float64]
+Gap = tuple[float, Array]
+"""How far two solids are proven to be apart, and the normal there."""
+MOST_DRAWN = 8
+"""Queries by which a way is drawn in."""
+MOST_STARTS = 3
+OTHER_WAY = 0.9
+"""Cosine of the angle of two ways below which both are tried."""
 
 
 def way_out(normals: Array) -> Array | None:
@@ -47,6 +54,59 @@ def least_way_out(normals: Array, depths: Array) -> Array | None:
     if float(np.linalg.norm(rest)) <= NO_WAY_OUT:
         return None
     return np.asarray(-scale * rest[:3] / rest[3])
+
+
+def shortest(
+    ways: Array, lengths: Array, gap_of: Callable[[Array], Gap | None], known: Array | None = None
+) -> Array:
+    """A short vector by which B is proven to be parted from A.
+
+    Parameters
+    ----------
+    ways, lengths : (n, 3) and (n,) arrays
+        Unit vectors, and how far B is to be moved along each until a plane is known to be between.
+    gap_of : callable
+        How far the solids are apart with B moved by a vector; None where it is not proven.
+    known : (3,) array, optional
+        One that parts them.
+    """
+    best = lengths.min() * ways[lengths.argmin()] if known is None else known
+    tried: list[Array] = []
+    for k in np.argsort(lengths, kind="stable"):
+        if len(tried) < MOST_STARTS and all(ways[k] @ other < OTHER_WAY for other in tried):
+            tried.append(ways[k])
+            way = _drawn_in((1.0 + MOVED_MORE) * lengths[k] * ways[k], gap_of)
+            if way is not None and np.linalg.norm(way) < np.linalg.norm(best):
+                best = way
+    return np.asarray(best)
+
+
+def _drawn_in(way: Array, gap_of: Callable[[Array], Gap | None]) -> Array | None:
+    """A vector by which B is proven to be parted from A, drawn in from one that is longer; None
+    where that one is not proven to part them.
+
+    If the gap after a move is d, B parts as well by what is d shorter, as nothing is met on the
+    way. From there the nearest point of the plane of contact is tried; where that does not part
+    them B is drawn in further, and then what is half way is tried.
+    """
+    best, is_new = way, False
+    for k in range(MOST_DRAWN):
+        told = gap_of(way)
+        if told is None:
+            if k == 0:
+                return None
+            way, is_new = (best if is_new else 0.5 * (way + best)), False
+            continue
+        gap, normal = told
+        length, before = float(np.linalg.norm(way)), float(np.linalg.norm(best))
+        drawn = max(0.0, 1.0 - (1.0 - MOVED_MORE) * gap / length) * way
+        if np.linalg.norm(drawn) < before:
+            best, is_new = drawn, True
+        if k and np.linalg.norm(best) > (1.0 - WAY_GAIN) * before:
+            break
+        foot = (1.0 + WAY_GAIN) * (drawn @ normal) * normal
+        way = foot if np.linalg.norm(foot) < (1.0 - WAY_GAIN) * np.linalg.norm(best) else best
+    return best
 
 
 def parted(normals: Array, tolerance: float, apart: Callable[[Array], bool]) -> float:

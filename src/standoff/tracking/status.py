@@ -78,8 +78,8 @@ _ADVICE = {
     ),
     Status.OVERLAPPING: (
         "The bodies are proven to overlap, but no depth is proven within the tolerance: the "
-        "distance is at most 0 and the lower bound holds; loosen the tolerance, or report the "
-        "pair with its poses."
+        "distance is at most 0 and both bounds hold: use them. Of solids `overlap.reason` says why "
+        "they are apart; of convex bodies loosen the tolerance, or report the pair with its poses."
     ),
     Status.NOT_CERTIFIED: (
         "No search brought the distance and its lower bound within the tolerance of each other: "

@@ -13,11 +13,11 @@ from standoff.geometry.validation import Array
 FIRST = 32
 
 
-def directions() -> Array:
-    """(FIRST, 3) unit vectors all round, on a spiral: none is an axis of a part, along which the
+def directions(count: int = FIRST) -> Array:
+    """(count, 3) unit vectors all round, on a spiral: none is an axis of a part, along which the
     highest of many points is any of a face."""
-    k = np.arange(FIRST)
-    height, around = 1.0 - (2.0 * k + 1.0) / FIRST, np.pi * (3.0 - np.sqrt(5.0)) * k
+    k = np.arange(count)
+    height, around = 1.0 - (2.0 * k + 1.0) / count, np.pi * (3.0 - np.sqrt(5.0)) * k
     flat = np.sqrt(1.0 - height**2)
     return np.column_stack([flat * np.cos(around), flat * np.sin(around), height])
 

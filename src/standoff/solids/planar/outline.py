@@ -55,6 +55,17 @@ class Outline(NamedTuple):
         """The greatest coordinate and the size, length."""
         return self.size + float(np.abs([self.low, self.high]).max())
 
+    @property
+    def starts(self) -> Array:
+        """(n, 2) first points of the leaves."""
+        return self.leaves.reshape(-1, P.N_LEAF)[:, P.START : P.START + 2]
+
+    def heights(self, ways: Array) -> Array:
+        """How far it reaches along unit vectors (n, 2), at most, lengths (n,)."""
+        rows = self.leaves.reshape(-1, P.N_LEAF)
+        ends = np.maximum(self.starts @ ways.T, rows[:, P.END : P.END + 2] @ ways.T)
+        return np.asarray((ends + leaf_radii(rows)[:, None]).max(axis=0))
+
     def leaf_int(self, leaf: int, which: int) -> int:
         return int(self.leaf_ints[P.N_LEAF_INT * leaf + which])
 

@@ -23,7 +23,7 @@ from standoff.solids.answer import (
     SolidProximity,
 )
 from standoff.solids.asked import DEFAULT, Asked
-from standoff.solids.parting import parted
+from standoff.solids.parting import Gap, parted, shortest
 from standoff.solids.planar.continua import continuum_of, distinct
 from standoff.solids.planar.pair import Queried, Shape
 from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_TO
@@ -36,6 +36,8 @@ Array = NDArray[np.float64]
 CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048
 MOST_SQUARES = 1200
+ALL_ROUND = 64
+"""Directions in the plane that are looked along for a way out."""
 UNSEEN: Array = np.full(3, np.nan)
 
 
@@ -289,19 +291,47 @@ def _meeting(pair: Queried, above: float) -> SolidProximity:
         smooth = Smoothness.ONE_SIDED
     pairs, counts = _pairs(pair, rows), _counts(searched.counts)
     normals = np.array([each.normal for each in pairs]).reshape(-1, 3)
-    way = parted(normals, pair.tolerance, lambda by: _is_apart(pair, by))
+    way = parted(normals, pair.tolerance, lambda by: _gap(pair, by) is not None)
     status = Status.TOUCHING if way < np.inf else Status.WITHIN
     bounds = -way, searched.least
     return _answer(pair, status, bounds, pairs, smooth, counts, continuum)
 
 
-def _is_apart(pair: Queried, by: Array) -> bool:
-    """Is it proven that the solids have no common point with B moved by a world vector?"""
+def _gap(pair: Queried, by: Array) -> Gap | None:
+    """How far the solids are apart, at least, with B moved by a world vector, and the normal there;
+    None where it is not proven that they have no common point."""
     poses = pair.poses.copy()
     poses[21:24] += by
     beside = pair._replace(poses=poses)
     found = search(beside, 0.0, np.inf, meeting=0.0)
-    return found.ended != S.MET and found.proven > 0.0 and not any(_inside(beside))
+    if found.ended == S.MET or not found.proven > 0.0 or any(_inside(beside)):
+        return None
+    return found.proven, pair.turned(found.found[0, 6:8])
+
+
+def _way_out(pair: Queried) -> Array:
+    """A world vector: B, moved by it, is proven to be apart from A."""
+    angles = 2.0 * np.pi * np.arange(ALL_ROUND) / ALL_ROUND
+    ways, away = np.column_stack([np.cos(angles), np.sin(angles)]), pair.poses[21:23]
+    R_a, R_b = (pair.poses[k : k + 9].reshape(3, 3)[:2, :2] for k in (0, 12))
+    lengths = pair.a.outline.heights(ways @ R_a) + pair.b.outline.heights(-ways @ R_b)
+    lengths += ways @ (pair.poses[9:11] - away) + 4.0 * pair.roundoff
+    return shortest(np.pad(ways, ((0, 0), (0, 1))), lengths, lambda by: _gap(pair, by))
+
+
+def _deepest(pair: Queried, ball: Overlap) -> float:
+    """No translation shorter than this parts the solids: the ball's diameter, or how deep an end of
+    one's leaves is in the other."""
+    depth, there = ball.depth, (pair.poses[:12], pair.poses[12:])
+    for own, other, (one, two) in (
+        (pair.a.outline, pair.b.outline, there), (pair.b.outline, pair.a.outline, there[::-1])
+    ):  # fmt: skip
+        R_one, R_two = one[:9].reshape(3, 3)[:2, :2], two[:9].reshape(3, 3)[:2, :2]
+        spots = (own.starts @ R_one.T + one[9:11] - two[9:11]) @ R_two
+        distances, inside, _ = other.foot(np.ascontiguousarray(spots), pair.tolerance)
+        depths = np.where(inside == 1, distances - pair.tolerance - pair.roundoff, 0.0)
+        depth = max(depth, float(depths.max(initial=0.0)))
+    return depth
 
 
 def common_ball(pair: Queried, searched: Searched) -> Overlap | None:
@@ -338,8 +368,10 @@ def _overlapping(
     pair: Queried, searched: Searched, overlap: Overlap | None = None
 ) -> SolidProximity:
     ball = overlap or common_ball(pair, searched)
-    distance = 0.0 if ball is None else -2.0 * ball.radius
-    bounds = -np.inf, distance
+    way = _way_out(pair)
+    if ball is not None:
+        ball = ball._replace(depth=_deepest(pair, ball), parting=way)
+    bounds = -float(np.linalg.norm(way)), 0.0 if ball is None else -ball.depth
     rows = distinct(pair, searched.found[:1])[:1] if len(searched.found) else ()
     pairs = _pairs(pair, np.asarray(rows))
     counts = _counts(searched.counts)

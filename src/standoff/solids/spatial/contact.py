@@ -19,7 +19,7 @@ from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, SET_ROW
 from standoff.kernels.solids.overlap_depth import BALL, ENOUGH, MOST_PUSHES
 from standoff.solids.answer import Overlap
-from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, started
+from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, evaluations_of, started
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.stationary import fans_of
@@ -94,7 +94,7 @@ def signed_told(best: Array, rows: Array, sets: Array, counts: NDArray[np.int64]
     return SignedMinima(
         rows[:count].reshape(-1, C.MINIMUM_REALS).copy(),
         sets.reshape(-1, SET_REALS).copy(),
-        int(counts[C.BOXES] + 2 * counts[C.STEPS] + counts[C.NODE_PAIRS]),
+        evaluations_of(counts),
     )
 
 
@@ -151,14 +151,14 @@ def are_joined(pair: PlacedPair, place: Place, ball: Overlap, end: Overlap) -> b
             return True
         middle = ball.common_point + NEXT_BALL * ball.radius / length * way
         about = float(np.linalg.norm(middle - place.point_a))
-        radius = min(depth for depth, _ in _depths(pair, middle, about))
+        radius = min(depth for depth, _ in depths_beside(pair, middle, about))
         if radius <= 0.0:
             return False
         ball = Overlap(middle, radius, 2.0 * radius)
     return False
 
 
-def _depths(pair: PlacedPair, point: Array, about: float) -> list[tuple[float, Array]]:
+def depths_beside(pair: PlacedPair, point: Array, about: float) -> list[tuple[float, Array]]:
     """How deep a world point is in A and in B, at least, and the ways away from their nearest
     points, world axes; of a solid that it is outside of the way to it."""
     found = []
@@ -181,7 +181,7 @@ def ball_of(pair: PlacedPair, found: SignedMinima, row: Array) -> Overlap:
     middle = points.mean(axis=0) @ pair.ra.T + pair.pa
     about, best = 0.5 * abs(float(row[0])), Overlap(middle, 0.0, 0.0)
     for _ in range(MOST_PUSHES):
-        depths = _depths(pair, middle, about)
+        depths = depths_beside(pair, middle, about)
         least = min(depth for depth, _ in depths)
         if least > best.radius:
             best = Overlap(middle, least, sum(depth for depth, _ in depths))

@@ -13,7 +13,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
 from standoff.solids.answer import MOST_OPEN, Continuum, PointPair, SolidProximity
 from standoff.solids.asked import DEFAULT, Asked
-from standoff.solids.parting import parted
+from standoff.solids.parting import Gap, parted
 from standoff.solids.spatial.contact import signed_minima_of
 from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.left_open import around, open_pairs
@@ -29,6 +29,7 @@ from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
 from standoff.solids.spatial.told import UNDEFINED, Inside, Told, answer_of
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_TOLERANCE
+from standoff.solids.spatial.way_out import short_way
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -213,6 +214,7 @@ def _meeting(
     spare = sought.deadline - found.told.evaluations
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance, spare)
     if overlap:
+        overlap = overlap._replace(parting=short_way(pair, gap_of))
         return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
 
@@ -222,7 +224,7 @@ def _overlapping(pair: PlacedPair, found: Found, sought: Sought) -> SolidProximi
     overlap."""
     reach, minima = contact_reach(pair, sought), sought.above - sought.patch
     signed = signed_minima_of(pair, reach)
-    told = told_overlapping(pair, signed, reach, minima or None, _is_apart)
+    told = told_overlapping(pair, signed, reach, minima or None, gap_of)
     if told is None:
         return None
     answer = told[0]
@@ -238,7 +240,7 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     near = _places(pair, found, senses, 0.0)
     continuum = continuum_of(pair, near, found, senses)
     normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])
-    way = parted(normals, found.tolerance, lambda by: _is_apart(pair.moved(by)))
+    way = parted(normals, found.tolerance, lambda by: gap_of(pair.moved(by)) is not None)
     if way == np.inf:
         # what proves that they touch takes less than looking for a ball beside each common point
         way = depth_bound(pair, found.tolerance)
@@ -247,6 +249,7 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
         spare = sought.deadline - common.told.evaluations
         overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance, spare)
         if overlap:
+            overlap = overlap._replace(parting=short_way(pair, gap_of))
             return answer_of(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
     places = near
     if sought.above > 0.0:
@@ -278,9 +281,12 @@ def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
     return replace(found, upper=float(touch[0][0]), minima=minima, best=touch[0])
 
 
-def _is_apart(pair: PlacedPair, tolerance: float | None = None) -> bool:
-    """Is it proven that two solids have no common point? `tolerance`: to what their distance is."""
+def gap_of(pair: PlacedPair, tolerance: float | None = None) -> Gap | None:
+    """How far two solids are apart, at least, and the normal there; None where it is not proven
+    that they have no common point. `tolerance`: to what their distance is."""
     if is_inside(pair, "A") or is_inside(pair, "B"):
-        return False
+        return None
     found = pair.least(OUTSIDE, Sought(tolerance or PROOF_TOLERANCE * pair.size))
-    return not found.met and found.lower > 0.0
+    if found.met or not found.lower > 0.0:
+        return None
+    return found.lower, pair.place(found.best, OUTSIDE).normal

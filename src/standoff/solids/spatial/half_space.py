@@ -26,6 +26,7 @@ from standoff.motion.pose import Pose
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.tolerances import SPOT_SPARE
 from standoff.solids.spatial.tree import packed_leaves
 
 HALF_SIDE = 1.25
@@ -125,6 +126,15 @@ class HalfSpaceBeside(SolidModel):
     def may_hold(self, point: Array) -> bool:
         """Its box has no end."""
         return True
+
+    @property
+    def has_end(self) -> bool:
+        """False."""
+        return False
+
+    def heights(self, ways: Array) -> Array:
+        """0 along its normal, else without end."""
+        return np.where(ways[:, 2] >= 1.0 - SPOT_SPARE, 0.0, np.inf)
 
 
 def of_pair(own: SolidModel, pose: Pose, other: SolidModel, pose_other: Pose) -> SolidModel:

@@ -6,7 +6,7 @@ A's boundary below it. Then the part is nowhere deep in A (docs/closing.md, "Hel
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,19 @@ from numpy.typing import NDArray
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import local_side, part_extents
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.torus_potential import CENTRE_OF
+from standoff.kernels.solids.torus_potential import (
+    AXIS_OF,
+    CENTRE_OF,
+    CIRCLE_OF,
+    CONE_OF,
+    TORUS_THROUGH,
+)
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import Sought, leaf_jet_of, started
 from standoff.solids.spatial.pair import PlacedPair, middle_of, references_of
 from standoff.solids.spatial.points import signed_distances
-from standoff.solids.spatial.tolerances import BESIDE_CONTACT
+from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.tolerances import BESIDE_CONTACT, BESIDE_DEPTH
 
 IntArray = NDArray[np.int64]
 
@@ -33,13 +40,17 @@ LEAST_COMMON = -0.9
 MOST_CHANGE = 0.8
 # Boxes of potentials and points, each with one of both solids as A.
 MOST_EVALUATIONS = 2_000_000
+# The same of solids that are pressed into each other, where another bound is known.
+MOST_PRESSED = 250_000
+# Parts from which on none is halved because it is not joined to another one.
+MOST_PARTS = 1_000
 # Potentials that are tried for one part.
 MOST_TRIED = 6
 # What the kernel needs of work space.
 WORK = 2048
 
 
-def depth_bound(pair: PlacedPair, tolerance: float) -> float:
+def depth_bound(pair: PlacedPair, tolerance: float, depth: float = 0.0) -> float:
     """How deep a point of one solid's boundary is in the other, at most; inf where it is not
     proven.
 
@@ -48,10 +59,12 @@ def depth_bound(pair: PlacedPair, tolerance: float) -> float:
     pair : PlacedPair
     tolerance : float
         The potentials may be missed by this, length; the bound is twice as much.
+    depth : float
+        By how much less than 0 they may be besides, length.
     """
     for each in (pair, pair.swapped()):
-        if _Sides(each, tolerance).hold():
-            return 2.0 * tolerance
+        if _Sides(each, tolerance, depth).hold():
+            return 2.0 * tolerance + depth
     return float(np.inf)
 
 
@@ -67,6 +80,8 @@ class _Part(NamedTuple):
     change : of the slope over the part and what is near it, at most.
     seen : whether the middle is on B, so that `beside` decides.
     potential : which one it is: its kind and numbers; empty: none.
+    piece : B's leaf, the rectangle, and how often it was halved.
+    settled : whether `beside` decides for the whole rectangle, on B or off it.
     """
 
     face: int
@@ -77,14 +92,19 @@ class _Part(NamedTuple):
     change: float
     seen: bool
     potential: tuple[float, ...]
+    piece: tuple[int, Array, int]
+    settled: bool
 
 
 class _Sides:
     """The search for potentials between B's parts and A's boundary."""
 
-    def __init__(self, pair: PlacedPair, tolerance: float) -> None:
-        self.pair, self.tolerance = pair, tolerance
-        self.near = BESIDE_CONTACT * pair.size
+    def __init__(self, pair: PlacedPair, tolerance: float, depth: float) -> None:
+        self.pair, self.pressed, self.tolerance = pair, depth > 0.0, tolerance + 0.5 * depth
+        self.near = max(BESIDE_CONTACT * pair.size, BESIDE_DEPTH * self.tolerance)
+        self.packed_a = _shifted(pair.a, 0.5 * depth)
+        # a larger change only has to be known where a part that is not joined is halved
+        self.most_change = np.finfo(float).max if self.pressed else MOST_CHANGE
         self.faces_a = np.array([k for k, leaf in enumerate(pair.a.leaves) if leaf.dim == 2])
         self.centres = np.array([pair.a.leaves[k].centre for k in self.faces_a])
         self.radii = np.array([np.linalg.norm(pair.a.leaves[k].half) for k in self.faces_a])
@@ -97,17 +117,29 @@ class _Sides:
         faces = [k for k, leaf in enumerate(pair.b.leaves) if leaf.dim == 2]
         if not (len(self.faces_a) and faces):  # a point
             return False
-        if not all(self._part(leaf, pair.b.leaves[leaf].reals[:4], 0) for leaf in faces):
-            return False
-        return _joined(self.parts, self.near) and self._outside() and self._other_outside()
+        waiting = [(leaf, pair.b.leaves[leaf].reals[:4], 0) for leaf in faces]
+        while waiting:
+            if not all(self._part(*piece) for piece in waiting):
+                return False
+            bad = self._not_joined()
+            if bad.any() and not (self.pressed and len(self.parts) < MOST_PARTS):
+                return False
+            split = [part.piece for k, part in enumerate(self.parts) if bad[k]]
+            self.parts = [part for k, part in enumerate(self.parts) if not bad[k]]
+            waiting = [
+                (leaf, half, cuts + 1)
+                for leaf, box, cuts in split
+                for half in self._halves(leaf, box)
+            ]
+        return self._outside() and self._other_outside()
 
     def _outside(self) -> bool:
         """Is each shell of B known to be outside A?"""
-        seen = [part for part in self.parts if part.seen]
+        seen = [part for part in self.parts if part.seen or (self.pressed and part.settled)]
         if not seen:
             return False
         told = signed_distances(self.pair.a, np.array([part.beside for part in seen]))
-        known = {part.face for part in seen}
+        known = {part.face for part in seen if part.seen}
         report = self.pair.b.report
         shells = getattr(report, "shells", ()) or (tuple(range(self.pair.b.boundary.n_faces)),)
         return bool((told.lower_bound > 0.0).all()) and all(known & set(each) for each in shells)
@@ -132,14 +164,22 @@ class _Sides:
         near = self.faces_a[away <= self.radii + np.linalg.norm(half) + self.near]
         for over in self._potentials(near, middle):
             told = self._asked(leaf, box, over, near)
-            if told[0] > 0.0 and told[7] <= MOST_CHANGE:
+            if told[0] > 0.0 and told[7] <= self.most_change:
                 face = self.pair.b.leaves[leaf].feature
                 potential = _potential(self.pair.a.leaves[over]) if over >= 0 else ()
-                slope, change = told[4:7], float(told[7])
-                part = _Part(face, centre, half, told[1:4], slope, change, told[8] > 0.0, potential)
+                # all of the rectangle, moved until it is above the potential, is near to it
+                own = leaf_jet_of(self.pair.b.packed, leaf, *box.reshape(2, 2).mean(axis=1))[0]
+                on_b = self.pair.in_a(own @ self.pair.rb.T + self.pair.pb)
+                lift = float(np.linalg.norm(told[1:4] - on_b))
+                moved = self.tolerance + lift - 0.5 * self.near + 2.0 * float(np.linalg.norm(half))
+                part = _Part(
+                    face, centre, half, told[1:4], told[4:7], float(told[7]), told[8] > 0.0,
+                    potential, (leaf, box, cuts), over >= 0 and moved < self.near,
+                )  # fmt: skip
                 self.parts.append(part)
                 return True
-        if cuts >= MOST_CUTS or self.counts[0] + 2 * self.counts[1] > MOST_EVALUATIONS:
+        most = MOST_PRESSED if self.pressed else MOST_EVALUATIONS
+        if cuts >= MOST_CUTS or self.counts[0] + 2 * self.counts[1] > most:
             return False
         return all(self._part(leaf, half, cuts + 1) for half in self._halves(leaf, box))
 
@@ -171,7 +211,7 @@ class _Sides:
         pair, shift = self.pair, float(np.linalg.norm(self.pair.relative[9:]))
         told, _ = started(Sought(self.tolerance), pair.size, shift)
         local_side(
-            (pair.a.packed, pair.b.packed),
+            (self.packed_a, pair.b.packed),
             pair.relative,
             np.array([leaf, over], dtype=np.int64),
             near,
@@ -182,24 +222,46 @@ class _Sides:
         )
         return told
 
+    def _not_joined(self) -> NDArray[np.bool_]:
+        """Of each part, may it have points in common with another one whose slope does not point
+        to the same side, so that not both are outside A if one is?"""
+        parts = self.parts
+        centres, halves = np.array([p.centre for p in parts]), np.array([p.half for p in parts])
+        slopes, changes = np.array([p.slope for p in parts]), np.array([p.change for p in parts])
+        gaps = np.abs(centres[:, None] - centres[None]) - halves[:, None] - halves[None]
+        numbers: dict[tuple[float, ...], int] = {(): -1}
+        which = np.array([numbers.setdefault(p.potential, len(numbers)) for p in parts])
+        held = which >= 0
+        meet = (gaps.max(axis=2) <= BESIDE_CONTACT * self.pair.size) & held[:, None] & held[None]
+        meet &= which[:, None] != which[None]
+        least = slopes @ slopes.T - changes[:, None] - changes[None]
+        apart = least <= LEAST_COMMON
+        if self.pressed:  # the slopes change on the way as well
+            grown = np.sqrt(np.maximum(0.5 * (1.0 + least), 0.0)) - changes[None]
+            apart = np.minimum(grown, grown.T) <= 4.0 / (BESIDE_DEPTH - 2.0)
+        settled = np.array([p.settled and self.pressed for p in parts])
+        return np.asarray((meet & apart).any(axis=1) & ~settled)
+
+
+def _shifted(solid: SolidModel, by: float) -> tuple[Any, Any, Any, Any]:
+    """A solid as the kernels read it, with its faces' own potentials greater by a length."""
+    ints, reals, own, numbers = solid.packed
+    numbers = numbers.copy()
+    for k, leaf in enumerate(solid.leaves):
+        row = numbers[own[S.R_LEAVES] + S.LEAF_STRIDE * k + S.NATURAL_REALS :][:9]
+        less = by * row[0]
+        if leaf.kind in (AXIS_OF, CENTRE_OF):
+            row[1] -= less
+        elif leaf.kind == CIRCLE_OF:
+            row[2] -= less
+        elif leaf.kind == TORUS_THROUGH:
+            row[3:6] -= less * row[6:]
+        elif leaf.kind == CONE_OF:
+            row[3:6] += less / row[2] * row[6:]
+    return ints, reals, own, numbers
+
 
 def _potential(leaf: Leaf) -> tuple[float, ...]:
     """What the natural potential of a face's leaf is made of; a sphere's axis says nothing."""
     count = 6 if leaf.kind == CENTRE_OF else 9
     return (leaf.kind, *leaf.reals[S.NATURAL_REALS : S.NATURAL_REALS + count].tolist())
-
-
-def _joined(parts: list[_Part], near: float) -> bool:
-    """Do the slopes of parts that may have points in common point to one side, so that both are
-    outside A if one is?"""
-    held = [part for part in parts if part.potential]
-    if not held:
-        return True
-    centres, halves = np.array([p.centre for p in held]), np.array([p.half for p in held])
-    slopes, changes = np.array([p.slope for p in held]), np.array([p.change for p in held])
-    gaps = np.abs(centres[:, None] - centres[None]) - halves[:, None] - halves[None]
-    numbers: dict[tuple[float, ...], int] = {}
-    which = np.array([numbers.setdefault(p.potential, len(numbers)) for p in held])
-    meet = (gaps.max(axis=2) <= near) & (which[:, None] != which[None])
-    least = slopes @ slopes.T - changes[:, None] - changes[None]
-    return bool((least[meet] > LEAST_COMMON).all())

@@ -81,8 +81,13 @@ class Found:
     @property
     def told(self) -> SolidCounts:
         """The counts as an answer has them."""
-        boxes, steps, nodes, leaves, cuts = self.counts
-        return SolidCounts(boxes + 2 * steps + nodes, nodes, leaves, boxes, cuts)
+        boxes, _, nodes, leaves, cuts = self.counts
+        return SolidCounts(evaluations_of(self.counts), nodes, leaves, boxes, cuts)
+
+
+def evaluations_of(counts: Any) -> int:
+    """What a deadline limits, by what a search has counted."""
+    return int(counts[C.BOXES] + 2 * counts[C.STEPS] + counts[C.NODE_PAIRS])
 
 
 @lru_cache(maxsize=8)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from standoff.geometry.validation import Array
 from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import BOUND
-from standoff.solids.answer import Overlap, SolidProximity
+from standoff.solids.answer import NEAR_BOUNDS, Overlap, SolidProximity
 from standoff.solids.parting import least_way_out
 from standoff.solids.spatial.contact import (
     MOST_REGIONS,
@@ -22,11 +22,14 @@ from standoff.solids.spatial.contact import (
     place_of,
     regions_of,
 )
+from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.minimum import Found, Sought
+from standoff.solids.spatial.overlap import common_ball, deepened
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.spatial.tolerances import CONTACT_REACH, PARTED_SPARE
+from standoff.solids.spatial.tolerances import CONTACT_REACH, HELD_WAY, PARTED_SPARE
+from standoff.solids.spatial.way_out import GapOf, short_way
 from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
 
@@ -45,7 +48,7 @@ def told_overlapping(
     signed: SignedMinima,
     sought: Sought,
     minima: float | None,
-    is_apart: Callable[[PlacedPair, float], bool],
+    gap_of: GapOf,
 ) -> Answered | None:
     """The answer where minima of the signed distance prove that the solids overlap; None where none
     does.
@@ -54,10 +57,9 @@ def told_overlapping(
     ----------
     minima : float or None
         Up to which distance minima are told that are no overlap; None: only the deepest place is.
-    is_apart : callable
-        Are two solids at poses proven to be apart, their distance to a tolerance? It is asked with
-        B moved by the shortest vector that opens all places, to first order; and depths are proven
-        as far as they can be.
+    gap_of : callable
+        It is asked with B moved by the shortest vector that opens all places, to first order; and
+        depths are proven as far as they can be.
     """
     regions = regions_of(pair, signed, sought.tolerance)
     if not regions:
@@ -65,15 +67,43 @@ def told_overlapping(
     places, overlap = [region.place for region in regions], _overlap(pair, signed, regions)
     spare = max(PARTED_BY * sought.tolerance, PARTED_SPARE * -places[0].distance)
     way = way_apart(places, spare)
-    if way is not None and is_apart(pair.moved(way), 0.5 * spare):
+    if way is not None and gap_of(pair.moved(way), 0.5 * spare):
         overlap = overlap._replace(parting=way)
     overlap = overlap._replace(depth=max(overlap.depth, *(_deep(pair, p) for p in places)))
-    rows = [region.row for region in regions]
+    overlap = closed(pair, overlap, places[0], sought, gap_of)
+    # what is deeper than a way that parts the solids is another way out of a region
+    most = max(overlap.most, -places[-1].distance)
+    rows = [region.row for region in regions if -region.place.distance <= most]
     if minima is None:
         rows = rows[:1]
     else:
         rows += [row for row in signed.sets if 0.0 <= row[0] <= minima]
     return _told(pair, signed, overlap, rows, sought)
+
+
+def closed(
+    pair: PlacedPair, overlap: Overlap, place: Place, sought: Sought, gap_of: GapOf
+) -> Overlap:
+    """An overlap whose bounds are brought near to each other, where they are not: by a shorter way
+    out, by a depth elsewhere than at its deepest place, and by what holds all round."""
+
+    def is_far() -> bool:
+        return overlap.most > NEAR_BOUNDS * max(overlap.depth, -place.distance)
+
+    if overlap.most > NEAR_BOUNDS * overlap.depth:
+        both = deepened(pair, place, sought.deadline)
+        overlap = overlap._replace(depth=max(overlap.depth, both.depth))
+    if is_far():
+        overlap = overlap._replace(parting=short_way(pair, gap_of, overlap.parting))
+    if is_far():
+        starts = place.point_a[None]
+        ball = common_ball(pair, starts, sought.tolerance, sought.deadline)
+        if ball and ball.depth > overlap.depth:
+            overlap = ball._replace(parting=overlap.parting)
+    about = max(overlap.depth, -place.distance)
+    if overlap.most > HELD_WAY * about:
+        overlap = overlap._replace(held=depth_bound(pair, sought.tolerance, about))
+    return overlap
 
 
 def told_in_contact(

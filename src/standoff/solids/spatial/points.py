@@ -96,7 +96,9 @@ def distance_to_boundary(solid: SolidModel, point: Array) -> Found:
     return least_distance(POINT, solid.packed, pose, (EITHER, EITHER), solid.size)
 
 
-def depth_beside(solid: SolidModel, point: Array, about: float) -> tuple[float, Array]:
+def depth_beside(
+    solid: SolidModel, point: Array, about: float, counts: NDArray[np.int64] | None = None
+) -> tuple[float, Array]:
     """(how deep a point is inside, at least; the nearest point of the boundary), own frame, where
     the boundary is known to be no farther than `about`, length. Below 0: it is outside, or on it.
 
@@ -111,7 +113,7 @@ def depth_beside(solid: SolidModel, point: Array, about: float) -> tuple[float, 
         np.array([*point, *asked]),
         (best, minima, told),
         scratch(threading.get_ident()),
-        np.zeros(8, dtype=np.int64),
+        np.zeros(8, dtype=np.int64) if counts is None else counts,
     )
     side = float(told[0]) or _by_ray(solid, point)
     return -side * float(told[1]), told[2:]

@@ -224,6 +224,23 @@ class SolidModel(KeepsReadOnly):
         node = self.numbers[o : o + S.NODE_REALS]
         return node[S.CENTRE : S.CENTRE + 3], float(np.linalg.norm(node[S.HALF : S.HALF + 3]))
 
+    @property
+    def has_end(self) -> bool:
+        """Is it no half-space?"""
+        return True
+
+    @cached_property
+    def _boxes(self) -> tuple[Array, Array]:
+        """Of its leaves: centres (n, 3), and half the sides of boxes around them (n, 3, 3)."""
+        arms = [leaf.half[:, None] * leaf.axes for leaf in self.leaves]
+        return np.array([leaf.centre for leaf in self.leaves]), np.array(arms)
+
+    def heights(self, ways: Array) -> Array:
+        """How far it reaches along unit vectors (n, 3), own frame, at most, lengths (n,)."""
+        centres, arms = self._boxes
+        reach = np.abs(arms.reshape(-1, 3) @ ways.T).reshape(len(arms), 3, -1).sum(axis=1)
+        return np.asarray((centres @ ways.T + reach).max(axis=0))
+
     def __repr__(self) -> str:
         b = self.boundary
         return (

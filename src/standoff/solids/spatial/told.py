@@ -47,9 +47,8 @@ def answer_of(pair: PlacedPair, found: Found, places: list[Place], told: Told) -
     distance, lower, upper = found.upper, found.lower, found.upper
     if told.overlap:
         upper = -told.overlap.depth
-        distance = min(upper, places[0].distance)
-        way = told.overlap.parting
-        lower = -np.inf if way is None else -float(np.linalg.norm(way))
+        lower = -told.overlap.most
+        distance = min(upper, max(lower, places[0].distance))
     minima = tuple(pair.nearest_pair(p, -np.inf if told.overlap else lower) for p in places)
     if told.patches:
         named = zip(minima, told.patches, strict=True)

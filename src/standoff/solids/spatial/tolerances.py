@@ -46,6 +46,8 @@ asked."""
 PARTED_SPARE: Final = 1e-3
 """Relative, of the depth: how much farther than it B is moved to see whether the solids are apart;
 a distance is proven the faster the greater it is."""
+HELD_WAY: Final = 2.0
+"""Times the depth of the deepest place: of a way out that is shorter nothing is held all round."""
 LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 """Of the size: steps from a common point of both boundaries among which one inside both is
 sought."""
@@ -77,6 +79,10 @@ by `ONE_AXIS`, in the turn of an edge."""
 BESIDE_CONTACT: Final = 1e-6
 """Of the sizes: around a part of a boundary that the other one holds, how far one potential has to
 be between both; far more than the tolerance, far less than a part."""
+BESIDE_DEPTH: Final = 14.0
+"""Times what potentials may be missed by: the same where one solid is pressed into the other. A way
+along the sum of two slopes leads above both if each potential grows by 4 times as much on it, and
+begins 2 times as much away."""
 MEETING: Final = 1e-9
 """Of the size: two faces of one boundary that come nearer than this meet; what parts may miss each
 other by (`JOIN_TOLERANCE`)."""

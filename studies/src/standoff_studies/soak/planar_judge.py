@@ -158,7 +158,7 @@ def _witness_faults(
 def _ball_faults(
     a: Judged, b: Judged, pose_a: so.Pose, pose_b: so.Pose, told: SolidProximity, true: Truth
 ) -> list[tuple[str, str]]:
-    """A ball inside both, of half the depth."""
+    """A ball inside both, no larger than half the depth, and a way out."""
     spare = ON_IT * true.extent
     if told.overlap is None:
         # boundaries apart, and material of both: no ball is asked for there
@@ -166,8 +166,10 @@ def _ball_faults(
     radius, found = told.overlap.radius, []
     if not radius > 0.0:
         found.append(("ball", f"radius {radius!r}"))
-    if not abs(told.distance + 2.0 * radius) <= spare:
+    if not (told.distance == -told.overlap.depth <= spare - 2.0 * radius):
         found.append(("ball", f"radius {radius!r}, distance {told.distance!r}"))
+    if not -np.inf < told.lower_bound <= told.distance:
+        found.append(("ball", f"lower bound {told.lower_bound!r}"))
     for one, pose in ((a, pose_a), (b, pose_b)):
         spot = _frame(pose, told.overlap.common_point)
         free = float(planar_truth.to_boundary(one.outline, *spot))
