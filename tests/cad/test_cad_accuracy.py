@@ -309,3 +309,26 @@ def test_a_curve_through_a_corner_of_knots_crosses_them_once() -> None:
 
     found = _crossed(places, line, surface)
     np.testing.assert_allclose(found, [0.3 * line.last], rtol=1e-12)
+
+
+@pytest.mark.parametrize("before", [0.0, 1e-6, -1e-6, 0.3])
+def test_a_part_of_a_periodic_spline_begins_where_its_face_does(before: float) -> None:
+    """OpenCASCADE gives one that begins a little before the first knot a period further on."""
+    from OCP.Geom import Geom_CylindricalSurface, Geom_RectangularTrimmedSurface
+    from OCP.GeomConvert import GeomConvert
+    from OCP.gp import gp_Ax3
+
+    from standoff.cad.surfaces import carrier
+
+    tube = Geom_RectangularTrimmedSurface(
+        Geom_CylindricalSurface(gp_Ax3(), 2.0), 0.0, 2.0 * np.pi, 0.0, 1.0
+    )
+    spline = GeomConvert.SurfaceToBSplineSurface_s(tube)
+    spline.SetUPeriodic()
+    over = (-before, 3.0 - before, 0.0, 1.0)
+    made = carrier(spline, over).surface
+    np.testing.assert_allclose(made.domain, over, atol=1e-9)
+    for u in np.linspace(*over[:2], 7):
+        np.testing.assert_allclose(
+            made.jet(float(u), 0.4)[0], spline.Value(float(u), 0.4).Coord(), atol=1e-12
+        )

@@ -172,17 +172,22 @@ def _spline(geometry: Any, over: Range) -> Carrier:
 
         geometry = GeomConvert.SurfaceToBSplineSurface_s(geometry)
     geometry = geometry.Copy()
-    if geometry.IsUPeriodic() or geometry.IsVPeriodic():
-        whole = list(geometry.Bounds())
-        for k, periodic in enumerate((geometry.IsUPeriodic(), geometry.IsVPeriodic())):
-            if periodic:
-                whole[2 * k : 2 * k + 2] = over[2 * k : 2 * k + 2]
+    whole = list(geometry.Bounds())
+    periods = [0.0, 0.0]
+    for k, periodic in enumerate((geometry.IsUPeriodic(), geometry.IsVPeriodic())):
+        if periodic:
+            periods[k] = whole[2 * k + 1] - whole[2 * k]
+            whole[2 * k : 2 * k + 2] = over[2 * k : 2 * k + 2]
+    if any(periods):
         geometry.CheckAndSegment(*whole)
     if geometry.IsUPeriodic():
         geometry.SetUNotPeriodic()
     if geometry.IsVPeriodic():
         geometry.SetVNotPeriodic()
     points, weights, knots_u, knots_v = _net(geometry)
+    for k, (period, knots) in enumerate(zip(periods, (knots_u, knots_v), strict=True)):
+        if period:  # what is cut out may be told a period further on than was asked
+            knots -= period * np.round((knots[0] - over[2 * k]) / period)
     moved = 0.0
     if max(geometry.UDegree(), geometry.VDegree()) > GREATEST_DEGREE:
         points, weights, knots_u, knots_v, moved = lowered(points, weights, knots_u, knots_v)
