@@ -58,6 +58,13 @@ def taper(slope: float, apex: float, *loop: tuple[int, int]) -> Face:
 
 
 @cache
+def taper_plug(slope: float, apex: float, low: float, high: float) -> Solid:
+    edges = [circle(slope * (low - apex), low), circle(slope * (high - apex), high)]
+    faces = [level(low, (0, 1)), taper(slope, apex, (0, 1), (1, 1)), level(high, (1, 1))]
+    return Solid.from_brep(edges=edges, faces=faces, name="taper plug")
+
+
+@cache
 def taper_bore(slope: float, apex: float, outer: float, low: float, high: float) -> Solid:
     """A tapered bore through a cylinder."""
     radii = (slope * (low - apex), slope * (high - apex), outer, outer)
