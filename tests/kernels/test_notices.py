@@ -68,7 +68,7 @@ def test_another_part_in_the_next_program_is_told_in_other_words(tmp_path: Path)
     """Of the same work: what a program does not call is compiled in a later one."""
     first, *_ = said(tmp_path)
     other, *_ = said(tmp_path, program=OTHER)
-    assert "(pcurve_jet, part 1 of at most 17)" in other
+    assert "(pcurve_jet, part 1 of at most 18)" in other
     assert first.partition("(")[0] == other.partition("(")[0]
     assert first != other
 
