@@ -332,3 +332,39 @@ def test_a_part_of_a_periodic_spline_begins_where_its_face_does(before: float) -
         np.testing.assert_allclose(
             made.jet(float(u), 0.4)[0], spline.Value(float(u), 0.4).Coord(), atol=1e-12
         )
+
+
+@pytest.mark.parametrize("width", [0.01, 0.3, 2.0, 2.0 * np.pi])
+def test_a_short_arc_is_bounded_over_itself_alone(width: float, rng: np.random.Generator) -> None:
+    """Its circle leaves the plane, or the sphere, by as much as its radius elsewhere."""
+    from standoff.cad.closed_bounds import closed_bound, sphere_bound
+    from standoff.geometry import Plane, Sphere
+    from standoff.geometry.curves import ConicArc
+    from standoff.geometry.exact_pcurves import pcurve_of
+
+    for _ in range(20):
+        first = rng.uniform(0.0, 6.0)
+        turned = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        centre = rng.normal(size=3)
+        arc = ConicArc(centre, 3.0 * turned[:, 0], 3.0 * turned[:, 1], first, first + width)
+        points = arc.points(np.linspace(arc.first, arc.last, 2001))
+
+        middle = points[1000]
+        tangent = arc.jet(0.5 * (arc.first + arc.last))[1] / 3.0
+        across = np.cross(tangent, rng.normal(size=3))
+        plane = Plane.through(middle, tangent, across / np.linalg.norm(across))
+        flat = pcurve_of(arc, plane)
+        bound = closed_bound(flat, arc, plane)
+        seen = np.linalg.norm(
+            plane.points(flat.places(np.linspace(arc.first, arc.last, 2001))) - points, axis=1
+        ).max()
+        assert bound is not None
+        assert seen <= bound + 1e-12
+        assert bound <= 1.03 * seen + 1e-12
+
+        sphere = Sphere(
+            1.5 * np.eye(3), middle - 1.5 * np.cross(tangent, across / np.linalg.norm(across))
+        )
+        seen = np.abs(np.linalg.norm(points - sphere.shift, axis=1) - 1.5).max()
+        if seen < 0.7:
+            assert seen <= sphere_bound(arc, sphere) + 1e-12 <= 2.0 * seen + 1e-11

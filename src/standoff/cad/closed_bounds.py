@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from standoff.cad.polynomial_bounds import chebyshev_points
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
@@ -58,15 +59,14 @@ def sphere_bound(curve: Curve, surface: Surface) -> float:
     it over the edge.
     """
     radius = float(np.linalg.norm(surface.linear[:, 0]))
-    away = curve.points(_chebyshev(curve)) - surface.shift
+    away = curve.points(_along(curve)) - surface.shift
     off = BETWEEN * np.abs(np.sum(away**2, axis=1) - radius**2).max()
     return float(off / (radius + np.sqrt(max(radius**2 - off, 0.0))))
 
 
-def _chebyshev(curve: Curve) -> Array:
-    """POINTS parameters of a line or an arc."""
-    nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
-    return np.asarray(curve.first + (curve.last - curve.first) * nodes)
+def _along(curve: Curve) -> Array:
+    """Chebyshev points of a line's or an arc's parameter."""
+    return np.asarray(curve.first + (curve.last - curve.first) * chebyshev_points(POINTS))
 
 
 def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
@@ -76,7 +76,7 @@ def _away(pcurve: Pcurve, curve: Curve, surface: Surface, t: float) -> Array:
 
 def _turning(parts: Array, curve: Curve) -> float:
     """A bound over an arc of |a cos t + b sin t + c|, of the columns a, b and c of (3, 3)."""
-    ts = _chebyshev(curve)
+    ts = _along(curve)
     values = np.stack([np.cos(ts), np.sin(ts), np.ones_like(ts)], axis=1) @ parts.T
     return float(BETWEEN * np.linalg.norm(values, axis=1).max())
 

@@ -213,14 +213,18 @@ def _edge_degree(ranges: Ranges, curve: Curve) -> int | None:
 def _values(ranges: Ranges, curve: Curve, degree: int) -> tuple[Array, Array, Array]:
     """At the Chebyshev points of each range for polynomials of a degree: homogeneous (u, v), and
     the edge's points and weights."""
-    count = POINTS * degree
-    nodes = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    nodes = chebyshev_points(POINTS * degree)
     p = basis(ranges.flat.shape[1] - 1, nodes) @ ranges.flat
     if ranges.net is not None:
         c = basis(ranges.net.shape[1] - 1, nodes) @ ranges.net
         return p, c[..., :3] / c[..., 3:], c[..., 3]
     ts = ranges.ends[:, :1] + nodes * np.diff(ranges.ends, axis=1)
     return p, curve.points(ts.ravel()).reshape(*ts.shape, 3), np.ones(ts.shape)
+
+
+def chebyshev_points(count: int) -> Array:
+    """Of the unit interval, ascending."""
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count))
 
 
 def _greatest(values: Array, below: Array) -> Array:
