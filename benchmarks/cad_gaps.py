@@ -2,9 +2,6 @@
 
 Run it with ``python -m benchmarks.cad_gaps FILE FILE ...``: each file's part of most faces that can
 be read is paired with the next one's. Times are of one thread, with closing, in milliseconds.
-
-With ``--report LEAST`` the parts of each file are one assembly: the times of the report on that
-clearance, of the one on the closest pairs, and of OpenCASCADE's distances pair by pair, in seconds.
 """
 
 from __future__ import annotations
@@ -15,7 +12,7 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +21,6 @@ import numpy as np
 import standoff as so
 from standoff.cad.instances import Instance, brep_instances, step_instances
 from standoff.cad.making import made_part
-from standoff.clearance import Wanted, check
 from standoff.solids import Solid
 
 Pose = tuple[np.ndarray, np.ndarray]
@@ -139,44 +135,12 @@ def row(pairs: list[tuple[Loaded, Loaded]], share: float, poses: int, theirs: in
     return "| " + " | ".join(cells) + " |"
 
 
-def report_row(path: Path, least: float, most: int) -> str:
-    """A file's parts as an assembly: our reports, and their distances of up to `most` pairs."""
-    found, _ = step_instances(path, "mm")
-    made: list[tuple[Any, Any]] = []
-    bodies, places, theirs = {}, {}, []
-    for k, instance in enumerate(found):
-        shape = next((m for s, m in made if s.IsPartner(instance.shape)), None)
-        if shape is None:
-            part = made_part(instance.shape, instance.name, False)
-            shape = part.shape if part.report.convex else Solid(part.shape)
-            made.append((instance.shape, shape))
-        bodies[f"{k} {instance.name}"] = shape
-        places[f"{k} {instance.name}"] = so.Pose.of(instance.pose)
-        theirs.append(moved(instance.shape, np.asarray(instance.pose)[:3]))
-    world = so.World(bodies)
-    asked, ours = timed(check, world, places, Wanted(least))
-    _, closest = timed(check, world, places)
-    pairs = list(combinations(theirs, 2))
-    _, spent = timed(lambda: [between(*pair) for pair in pairs[:most]])
-    cells = [path.name, len(bodies), len(made), len(pairs), len(asked.rows), len(asked.failures)]
-    times = [f"{1e-3 * t:.2f}" for t in (ours, closest, spent * len(pairs) / len(pairs[:most]))]
-    return "| " + " | ".join(map(str, (*cells, *times))) + " |"
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", type=Path, nargs="+")
     parser.add_argument("--poses", type=int, default=10)
     parser.add_argument("--theirs", type=int, default=3, help="poses that OpenCASCADE gets too")
-    parser.add_argument("--report", type=float, metavar="LEAST", help="report on assemblies")
-    parser.add_argument("--most", type=int, default=1000, help="pairs that OpenCASCADE gets")
     given = parser.parse_args()
-    if given.report is not None:
-        heads = ("file", "parts", "different", "pairs", "near", "fail", "report s", "closest s")
-        print("| " + " | ".join((*heads, "OCCT s")) + " |\n" + "|---" * (len(heads) + 1) + "|")
-        for file in given.files:
-            print(report_row(file, given.report, given.most), flush=True)
-        return 0
     parts = [part for file in given.files if (part := loaded(file)) is not None]
     for part in parts:
         print(f"{part.name}: {part.faces} faces")

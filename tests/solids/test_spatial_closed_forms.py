@@ -171,3 +171,15 @@ def test_a_volume_that_differs_is_refused() -> None:
     assert Solid(made, volume=0.7 * area).check().volume == pytest.approx(0.7 * area)
     with pytest.raises(ValueError, match="has the volume"):
         Solid(made, volume=1.0)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.9, 0.99, 0.999])
+def test_what_is_a_little_farther_than_asked_takes_no_more_than_its_distance(share: float) -> None:
+    """Potentials through the nearest place are tried, though it is beyond the horizon."""
+    bore, pin = tube(2.25, 5.0, -4.0, 4.0), peg(2.14, -4.0, 8.0)
+    whole = spatial_distance(bore, pin)
+    checked(whole, 0.11)
+    far = spatial_distance(bore, pin, asked=Asked(within=share * 0.11))
+    assert far.status is Status.FAR
+    assert share * 0.11 <= far.lower_bound <= 0.11
+    assert far.counts.evaluations <= 1.2 * whole.counts.evaluations

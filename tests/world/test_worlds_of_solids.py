@@ -15,6 +15,7 @@ from standoff.geometry import ConicArc, Line
 from standoff.motion import ConstantTwist
 from standoff.solids import OpenPair, Overlap, PlanarSolid, SolidProximity
 from standoff.solids.of_pieces import OfPieces, answer_of_pieces, turned
+from standoff.tracking.derivatives import Smoothness
 from standoff.world import SolidPairAnswer
 
 EYE = np.eye(3)
@@ -464,3 +465,69 @@ def test_compounds_of_convex_pieces_are_asked_as_in_a_world() -> None:
     far = so.distance(RINGS, PEG, at(0.0), at(9.0), within=1.0)
     assert far.status is so.Status.FAR
     assert far.lower_bound >= 1.0
+
+
+@pytest.mark.parametrize(
+    ("gap", "aside"), [(0.1, 0.0), (0.1, 0.04), (0.0, 0.0)], ids=["all round", "line", "touching"]
+)
+def test_copies_in_one_place_to_each_other_are_asked_once(
+    gap: float, aside: float, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Turned and moved together they have the answer of the first, where they are; one that is a
+    little aside is asked anew."""
+    pin, asked = peg(1.0 - gap, -0.4, 3.0), []
+
+    def counted(*given: object, **options: object) -> SolidProximity:
+        asked.append(given)
+        return so.solids.distance(*given, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("standoff.world.solid_rows.distance", counted)
+    poses: dict[str, so.Pose] = {}
+    for k in range(4):
+        turn = Rotation.random(random_state=rng).as_matrix()
+        whole = so.Pose(turn, 8.0 * k * EYE[0] + rng.normal(size=3))
+        poses |= {f"ring{k}": whole, f"pin{k}": whole @ at(aside, 0.0, 1e-6 * (k == 3))}
+    world = so.World({name: RING if "ring" in name else pin for name in poses}, within=0.3)
+    answer = world.distances(poses)
+    assert len(answer.pairs) == 4
+    assert len(asked) == 2
+    for k in range(4):
+        names = f"ring{k}", f"pin{k}"
+        found = answer[names]
+        alone = so.solids.distance(RING, pin, *(poses[name] for name in names), within=0.4)
+        assert found.status is alone.status
+        assert found.lower_bound <= alone.upper_bound
+        assert alone.lower_bound <= found.upper_bound
+        assert found.upper_bound - found.lower_bound < alone.upper_bound - alone.lower_bound + 1e-10
+        # its points are on the circles and lines where it is
+        for point, name, radius in (
+            (found.point_a, "ring", 1.0),
+            (found.point_b, "pin", 1.0 - gap),
+        ):
+            own = poses[f"{name}{k}"].inverse().apply(point)
+            assert np.hypot(*own[:2]) == pytest.approx(radius, abs=1e-9)
+            assert abs(own[2]) <= 0.5 + 1e-9
+        assert found.point_b - found.point_a == pytest.approx(
+            found.distance * found.normal, abs=1e-9
+        )
+        for each in found.minima:
+            assert np.linalg.norm(each.point_b - each.point_a) == pytest.approx(
+                each.distance, abs=1e-9
+            )
+        if found.smoothness is Smoothness.PARTIAL:
+            pushed = np.r_[-found.normal, found.normal]
+            assert found.gradient_rows[[0, 1, 2, 6, 7, 8]] == pytest.approx(pushed, abs=1e-9)
+
+
+def test_overlaps_of_copies_are_each_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What parts them is proven where they are."""
+    pin, calls = peg(1.01, -0.4, 0.4), []
+    monkeypatch.setattr(
+        "standoff.world.solid_rows.distance",
+        lambda *given, **options: calls.append(1) or so.solids.distance(*given, **options),
+    )
+    poses = {f"{name}{k}": at(8.0 * k) for k in range(2) for name in ("ring", "pin")}
+    world = so.World({name: RING if "ring" in name else pin for name in poses}, within=0.3)
+    answer = world.distances(poses)
+    assert len(calls) == 2
+    assert all(pair.penetrating for pair in answer.pairs)

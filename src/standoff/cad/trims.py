@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.optimize import elementwise
 
 from standoff.bodies.tolerances import DOMAIN_SPARE
 from standoff.cad.curves import (
@@ -350,6 +349,8 @@ def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
         return np.where(k == 0, uv[:, 0], uv[:, 1]) - level
 
     if brackets:
+        from scipy.optimize import elementwise
+
         low, high, axis, level = np.array(brackets).T
         roots = elementwise.find_root(away, (low, high), args=(axis, level))
         found += roots.x[roots.success].tolist()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -314,6 +314,42 @@ class SolidProximity(KeepsReadOnly, PlainData):
                 "known of it, and `smoothness` says what that is."
             )
         return self.gradient_rows
+
+    def carried(self, poses: tuple[Array, Array], doubt: float) -> SolidProximity:
+        """Return the answer of the same solids, apart or touching, that were moved together.
+
+        Parameters
+        ----------
+        poses : pair of (12,) arrays
+            As the attribute.
+        doubt : float
+            No point of B has moved by more than this relative to A, length.
+        """
+        old, new = self.poses[0].reshape(4, 3), poses[0].reshape(4, 3)
+        turn = new[:3] @ old[:3].T
+
+        def at(points: Array) -> Array:
+            return (points - old[3]) @ turn.T + new[3]
+
+        def pairs(given: tuple[PointPair, ...]) -> tuple[PointPair, ...]:
+            return tuple((at(x), at(y)) for x, y in given)
+
+        minima = tuple(
+            each._replace(
+                lower_bound=each.lower_bound - doubt, point_a=at(each.point_a),
+                point_b=at(each.point_b), normal=turn @ each.normal, patch=pairs(each.patch),
+            )
+            for each in self.minima
+        )  # fmt: skip
+        left = tuple(OpenPair(bound - doubt, a, b, at(x), at(y)) for bound, a, b, x, y in self.open)
+        ends = self.continuum and self.continuum._replace(ends=pairs(self.continuum.ends))
+        return replace(
+            self, lower_bound=self.lower_bound - doubt, upper_bound=self.upper_bound + doubt,
+            point_a=at(self.point_a), point_b=at(self.point_b), normal=turn @ self.normal,
+            minima=minima, continuum=ends, open=left, poses=poses,
+            gradient_rows=(self.gradient_rows.reshape(4, 3) @ turn.T).ravel(),
+            counts=SolidCounts(open=self.counts.open),
+        )  # fmt: skip
 
     def as_dict(self) -> dict[str, Any]:
         """Return the answer as plain data, under the attributes' names."""

@@ -89,6 +89,8 @@ class Rules(NamedTuple):
 
     def margin(self, i: int, j: int) -> float:
         """The margin of a pair, 0 where it has none."""
+        if not (len(self.margins) or self.kind_margins.any()):
+            return 0.0
         number = min(i, j) * len(self.kinds) + max(i, j)
         return float(self.margins_of(np.array([number]))[0])
 

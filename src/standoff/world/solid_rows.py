@@ -24,7 +24,7 @@ from standoff.solids.of_pieces import OfPieces, answer_of_pieces
 from standoff.solids.query import distance
 from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
-from standoff.solids.tracked.front import Front
+from standoff.solids.tracked.front import Front, moved_by
 from standoff.solids.tracked.state import SolidState
 from standoff.solids.tracked.tracker import SolidTracker, is_tracked
 from standoff.tracking.derivatives import Smoothness
@@ -37,6 +37,7 @@ from standoff.world.pieces import PieceUnion
 from standoff.world.placed_solids import PlacedSolid, placed_solid
 from standoff.world.shapes import slack_of
 from standoff.world.state import PAGE, KeptSolids
+from standoff.world.tolerances import ONE_PLACE
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -67,6 +68,7 @@ class SolidRows:
         self._found: dict[int, SolidProximity] = {}
         self._fronts: dict[int, Front] = {}
         self._asked: set[int] = set()
+        self._cold: dict[tuple[int, int, float | None], list[tuple[Array, SolidProximity]]] = {}
 
     def settle(self, fates: Ints) -> None:
         """Which rows rest, whatever their status: a cold query would find the same; and which must
@@ -120,12 +122,36 @@ class SolidRows:
         if key in self.before.pieces and is_tracked(a, b):
             found = self._tracked(key, (a, b), (pose_a, pose_b))
         else:
-            found = distance(a, b, pose_a, pose_b, within=within)
+            found = self._once((p, q), (a, b), (pose_a, pose_b), within)
         return replace(
             found,
             lower_bound=found.lower_bound - doubt,
             upper_bound=found.upper_bound + doubt,
         )
+
+    def _once(
+        self,
+        pieces: tuple[int, int],
+        solids: tuple[Any, Any],
+        poses: tuple[Pose, Pose],
+        within: float | None,
+    ) -> SolidProximity:
+        """Asked from nothing, once of all pairs of the same solids that are in one place to each
+        other, as those of copies of an assembly are."""
+        (a, b), (pose_a, pose_b) = solids, poses
+        place = _row_of(pose_a.inverse() @ pose_b)
+        known = self._cold.setdefault((id(a), id(b), within), [])
+        row, pads = self.frame.placed[pieces[1]], self.frame.placed[list(pieces), W.P_PAD].sum()
+        low, high = (row[o : o + 3] - pose_b.translation for o in (W.P_LOW, W.P_HIGH))
+        reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
+        for other, found in known:
+            doubt = float(pads) + moved_by(other, place, reach)
+            if doubt <= ONE_PLACE * size_together(a, b):
+                return found.carried((_row_of(pose_a), _row_of(pose_b)), doubt)
+        found = distance(a, b, pose_a, pose_b, within=within)
+        if found.overlap is None:
+            known.append((place, found))
+        return found
 
     def _tracked(
         self, key: int, solids: tuple[Any, Any], poses: tuple[Pose, Pose]
@@ -251,3 +277,8 @@ class SolidRows:
             twist = self.moment.twists[[i, j], :6].ravel()
             block[K.OUT_RATE] = found.gradient_rows @ twist
         return block
+
+
+def _row_of(pose: Pose) -> Array:
+    """(12,): R by rows, p."""
+    return np.concatenate([pose.rotation.ravel(), pose.translation])

@@ -193,7 +193,8 @@ class World(KeepsReadOnly):
 
     def margin(self, a: str, b: str) -> float:
         """The clearance that two bodies must keep, length; 0 where none was given."""
-        i, j = (self.model.names.body(name, "margin") for name in (a, b))
+        body = self.model.names.body
+        i, j = body(a, "margin"), body(b, "margin")
         return self.model.search.rules.margin(i, j)
 
     def start(self, poses: PosesLike, twists: Any = None) -> WorldState:

@@ -42,6 +42,7 @@ from standoff.kernels.solids.spatial_pieces import (
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     AT,
+    BEYOND,
     BISECTIONS,
     BUDGET,
     LEAF_A,
@@ -410,7 +411,8 @@ def closed_to(goal, row, pair, limit, best, minima, counts):
         o = MINIMUM_REALS * row
         wa, wb = int(minima[o + 1]), int(minima[o + 2])
         at = (minima[o + 3], minima[o + 4], minima[o + 5], minima[o + 6])
-    if wa == a.leaf and wb == b.leaf and distance >= goal:
+    here = wa == a.leaf and wb == b.leaf and distance >= goal
+    if here or (row < 0 and best[BEYOND] == inf):
         return -1, NO_POTENTIAL
     way, phi = by_witness(goal, a, b, (wa, wb, at), ALL_WAYS, limit, best, counts)
     return THERE + way if way >= 0 else -1, phi

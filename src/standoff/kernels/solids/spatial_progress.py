@@ -11,14 +11,15 @@ from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet, on_solid,
 # below which distance the boundaries meet. Then how many minima have room and how many were left
 # out, how many pairs of boxes stayed open and how many of them have room, the least bound of the
 # pair of leaves at hand, and after how many evaluations no further potential is tried for a pair of
-# parts, 0: each is; from OPEN_ROWS on the open pairs.
+# parts, 0: each is. Then how far the place (leaves and parameters) is if it is beyond what is asked
+# for, inf: there is none yet, 0: it is not beyond; from OPEN_ROWS on the open pairs.
 LEAST, N_MINIMA, LEAF_A, LEAF_B, AT, OPEN, MET, TOLERANCE, ROUNDING, SIZE, BUDGET = (
     0, 1, 2, 3, 4, 8, 9, 10, 11, 12, 13,
 )  # fmt: skip
-ABOVE, MEETING, MOST_MINIMA, LOST, N_OPEN, MOST_OPEN, OF_LEAVES, STOP = (
-    14, 15, 16, 17, 18, 19, 20, 21,
+ABOVE, MEETING, MOST_MINIMA, LOST, N_OPEN, MOST_OPEN, OF_LEAVES, STOP, BEYOND = (
+    14, 15, 16, 17, 18, 19, 20, 21, 22,
 )  # fmt: skip
-BEST_REALS = OPEN_ROWS = 22
+BEST_REALS = OPEN_ROWS = 23
 # What an open pair holds: leaves (-1 - node where it is a node), both boxes, its bound.
 OPEN_REALS = 11
 # What a minimum holds: distance, leaves, parameters, bound; where local ones are kept both points
@@ -82,13 +83,18 @@ def put_places(a, b, minima, o):
 
 
 @kernel
+def put_place(best, a, b, q):
+    best[LEAF_A], best[LEAF_B] = a.leaf, b.leaf
+    for k in range(4):
+        best[AT + k] = q[k]
+
+
+@kernel
 def keep(best, minima, a, b, q, distance):
     """Keep a pair of points of two parts, which are on both solids."""
     if distance < best[LEAST]:
-        best[LEAST] = distance
-        best[LEAF_A], best[LEAF_B] = a.leaf, b.leaf
-        for k in range(4):
-            best[AT + k] = q[k]
+        best[LEAST], best[BEYOND] = distance, 0.0
+        put_place(best, a, b, q)
     if distance > farthest(best):
         return
     if not make_room(best, minima):
@@ -123,10 +129,14 @@ def on_both(a, b, q):
 
 @kernel
 def keep_found(a, b, q, distance, best, minima):
-    """Keep a pair that is as near as is of interest, if both points are on the solids."""
-    if distance <= farthest(best) and on_both(a, b, q):
+    """Keep a pair that is as near as is of interest, if both points are on the solids; beyond that
+    the nearest, through which potentials prove that none is nearer."""
+    if distance <= max(farthest(best), best[BEYOND]) and on_both(a, b, q):
         tie = distance <= best[LEAST] + best[TOLERANCE]
         if tie or not (at_cut(a, q[0], q[1]) or at_cut(b, q[2], q[3])):
+            if distance < best[BEYOND]:
+                best[BEYOND] = distance
+                put_place(best, a, b, q)
             keep(best, minima, a, b, q, distance)
     if best[LEAST] <= best[MEETING]:
         best[MET] = 1.0

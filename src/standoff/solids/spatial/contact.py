@@ -109,10 +109,13 @@ def place_of(pair: PlacedPair, found: SignedMinima, row: Array) -> Place:
 
 def regions_of(pair: PlacedPair, found: SignedMinima, tolerance: float) -> list[Region]:
     """The regions in which the solids overlap, the deepest first; of minima that are proven to be
-    in one region the one of the least depth."""
+    in one region the one of the least depth. Solids whose deepest minimum is within the tolerance
+    are not told apart from solids that touch by them."""
     told: list[Region] = []
     balls: list[Overlap] = []
     below = [row for row in found.sets if row[0] < 0.0][:MOST_REGIONS]
+    if not any(row[0] < -tolerance for row in below):
+        return told
     for row in reversed(below):  # the least depth first
         place, about = place_of(pair, found, row), -float(row[0])
         depth = least_depth(pair, place)

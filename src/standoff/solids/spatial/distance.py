@@ -21,7 +21,7 @@ from standoff.solids.spatial.local_minima import local_minima
 from standoff.solids.spatial.minimum import Found, Sought
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.overlap import ball_beside, common_ball
-from standoff.solids.spatial.overlapping import contact_reach, told_overlapping
+from standoff.solids.spatial.overlapping import closed, contact_reach, told_overlapping
 from standoff.solids.spatial.pair import Place, PlacedPair, references_of
 from standoff.solids.spatial.patches import patches_of
 from standoff.solids.spatial.points import signed_distances
@@ -29,7 +29,6 @@ from standoff.solids.spatial.stationary import is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct
 from standoff.solids.spatial.told import UNDEFINED, Inside, Told, answer_of
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_TOLERANCE
-from standoff.solids.spatial.way_out import short_way
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -214,7 +213,7 @@ def _meeting(
     spare = sought.deadline - found.told.evaluations
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance, spare)
     if overlap:
-        overlap = overlap._replace(parting=short_way(pair, gap_of))
+        overlap = closed(pair, overlap, place, sought, gap_of)
         return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
 
@@ -249,7 +248,7 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
         spare = sought.deadline - common.told.evaluations
         overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance, spare)
         if overlap:
-            overlap = overlap._replace(parting=short_way(pair, gap_of))
+            overlap = closed(pair, overlap, near[0], sought, gap_of)
             return answer_of(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
     places = near
     if sought.above > 0.0:

@@ -106,6 +106,7 @@ def started(sought: Sought, size: float, away: float) -> tuple[Array, Array]:
     the solids' frames are from each other, length."""
     best = np.zeros(C.BEST_REALS + C.OPEN_REALS * sought.listed)
     best[C.LEAST], best[C.OPEN] = sought.below, np.inf
+    best[C.BEYOND] = 0.0 if sought.below == np.inf else np.inf
     best[C.TOLERANCE] = sought.tolerance
     best[C.ROUNDING] = PROOF_ROUNDING * (size + away)
     best[C.SIZE], best[C.BUDGET] = size, sought.deadline
