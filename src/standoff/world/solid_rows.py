@@ -37,7 +37,7 @@ from standoff.world.pieces import PieceUnion
 from standoff.world.placed_solids import PlacedSolid, placed_solid
 from standoff.world.shapes import slack_of
 from standoff.world.state import PAGE, KeptSolids
-from standoff.world.tolerances import ONE_PLACE
+from standoff.world.tolerances import ALIKE_PLACED
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -146,7 +146,7 @@ class SolidRows:
         reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
         for other, found in known:
             doubt = float(pads) + moved_by(other, place, reach)
-            if doubt <= ONE_PLACE * size_together(a, b):
+            if doubt <= ALIKE_PLACED * size_together(a, b):
                 return found.carried((_row_of(pose_a), _row_of(pose_b)), doubt)
         found = distance(a, b, pose_a, pose_b, within=within)
         if found.overlap is None:
