@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +15,24 @@ from cad import cad_shapes as made
 from standoff.clearance.report import Report
 
 
-@pytest.fixture(scope="module")
-def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A peg with 0.01 of play in a plate's hole, and a cube beside them, in one file."""
+def write_parts(path: Path, parts: list[Any]) -> Path:
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Compound
 
-    plate = made.cut(made.box(40, 40, 10, (-20, -20, 0)), made.cylinder((0, 0, -1), 5.0, 12))
-    parts = [plate, made.cylinder((0, 0, -5), 4.99, 20), made.box(4, 4, 4, (10, 10, 10.5))]
     whole, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(whole)
     for part in parts:
         builder.Add(whole, part)
-    path: Path = made.write_step(whole, tmp_path_factory.mktemp("step") / "peg.step")
+    written: Path = made.write_step(whole, path)
+    return written
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A peg with 0.01 of play in a plate's hole, and a cube beside them, in one file."""
+    plate = made.cut(made.box(40, 40, 10, (-20, -20, 0)), made.cylinder((0, 0, -1), 5.0, 12))
+    parts = [plate, made.cylinder((0, 0, -5), 4.99, 20), made.box(4, 4, 4, (10, 10, 10.5))]
+    path: Path = write_parts(tmp_path_factory.mktemp("step") / "peg.step", parts)
     return path
 
 
@@ -78,3 +84,43 @@ def test_bad_files_and_options_are_code_2(standoff: Any, file: Path, tmp_path: P
         assert ended.code == 2, arguments
         assert words in ended.err
         assert "Traceback" not in ended.err
+
+
+@pytest.fixture(scope="module")
+def pressed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A pin of 3.025 in a bore of 3, a plate 0.5 into the bush, and a cube beside them."""
+    bush = made.cut(made.cylinder((0, 0, 0), 5.0, 10), made.cylinder((0, 0, -1), 3.0, 12))
+    plate = made.box(20, 20, 2, (-10, -10, 9.5))
+    plate = made.cut(plate, made.cylinder((0, 0, 0), 4.0, 20))
+    pin, cube = made.cylinder((0, 0, 0), 3.025, 10), made.box(1, 1, 1, (12, 0, 0))
+    folder = tmp_path_factory.mktemp("pressed")
+    path: Path = write_parts(folder / "pressed.step", [bush, pin, plate, cube])
+    return path
+
+
+def test_volumes_in_common(standoff: Any, pressed: Path, file: Path, tmp_path: Path) -> None:
+    """Those of the closed forms, where parts overlap and nowhere else, and on each route."""
+    page = tmp_path / "volumes.html"
+    ended = standoff("clearance", pressed, "--volume", "--page", page)
+    assert ended.code == 0
+    _, told = facts(standoff, pressed, "--volume")
+    volumes = [pair.get("common_volume") for pair in told["pairs"]]
+    known = [pi * 10 * (3.025**2 - 9), pi * 0.5 * (25 - 16)]
+    found = sorted(volume for volume in volumes if volume is not None)
+    assert found == pytest.approx(sorted(known), rel=1e-6)
+    assert told["verdicts"]["OVERLAPPING"] == len(found)
+    for text in (ended.out, page.read_text("utf-8")):
+        assert "4.73202" in text
+        assert "common (mm³)" in text
+        assert "not proven" in text
+    _, told = facts(standoff, pressed)
+    assert "common_volume" not in told["pairs"][0]
+    # nothing overlaps
+    _, told = facts(standoff, file, "--volume")
+    assert all("common_volume" not in pair for pair in told["pairs"])
+
+
+def test_volumes_are_of_parts_of_a_cad_file(standoff: Any) -> None:
+    ended = standoff("clearance", "examples/fits.toml", "--volume")
+    assert ended.code == 2
+    assert "--volume: only of a CAD file's parts" in ended.err

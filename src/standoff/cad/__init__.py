@@ -7,6 +7,7 @@ from standoff.on_demand import on_demand
 if TYPE_CHECKING:
     from standoff.cad.assembly import Assembly, Part, PartReport
     from standoff.cad.reading import (
+        common_volumes,
         from_shape,
         read_brep,
         read_cad,
@@ -22,6 +23,7 @@ else:
             "standoff.cad.assembly": ("Assembly", "Part", "PartReport"),
             "standoff.errors": ("CadError",),
             "standoff.cad.reading": (
+                "common_volumes",
                 "from_shape",
                 "read_brep",
                 "read_cad",
@@ -37,6 +39,7 @@ __all__ = [
     "CadError",
     "Part",
     "PartReport",
+    "common_volumes",
     "from_shape",
     "read_brep",
     "read_cad",

@@ -41,6 +41,16 @@ class Instance:
     colour: Colour | None
 
 
+def at_place(instance: Instance) -> Any:
+    """An instance's shape where it is."""
+    from OCP.gp import gp_Trsf
+    from OCP.TopLoc import TopLoc_Location
+
+    motion = gp_Trsf()
+    motion.SetValues(*np.asarray(instance.pose)[:3].ravel().tolist())
+    return instance.shape.Moved(TopLoc_Location(motion))
+
+
 def step_instances(file: Path, unit: str) -> tuple[list[Instance], str]:
     """The instances of a STEP file, and its unit.
 

@@ -66,6 +66,18 @@ def volume_of(shape: Any, adaptive: bool = False) -> float:
     return float(found.Mass())
 
 
+def common_volume(a: Any, b: Any) -> float | None:
+    """The volume that two shapes have in common, by OpenCASCADE's boolean operation; None where it
+    fails."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+
+    common = BRepAlgoAPI_Common(a, b)
+    if not common.IsDone() or common.Shape().IsNull():
+        return None
+    found = abs(volume_of(common.Shape(), adaptive=True))
+    return found if found <= min(abs(volume_of(a, True)), abs(volume_of(b, True))) else None
+
+
 def judged(shape: Any, what: str, own: float, near: float) -> tuple[float, float]:
     """(area or volume, by how much one's own may differ from it): by OpenCASCADE's two rules, as
     no one is right for all shapes, and where neither is nearer than `near` by a quadrature that

@@ -371,6 +371,41 @@ def _assembly(read: Solids, options: Options, watch: Watch) -> Assembly:
     return Assembly(tuple(parts), *units, source, left_out, spent, read.stored)
 
 
+def common_volumes(
+    path: Any, pairs: Sequence[tuple[str, str]], *, unit: str = "mm"
+) -> dict[tuple[str, str], float | None]:
+    """The volumes that parts of a file have in common where they are, by OpenCASCADE's boolean
+    operations on the file's own shapes: nothing is proven of them.
+
+    Parameters
+    ----------
+    path, unit : as for `read_cad`.
+    pairs : sequence of (str, str)
+        Names of parts.
+
+    Returns
+    -------
+    dict of (str, str) to float or None
+        [length³]; None where the operation fails.
+
+    Raises
+    ------
+    CadError, FileNotFoundError, ModuleNotFoundError
+        As for `read_cad`; a name that no part has.
+    """
+    file = existing(path)
+    if not pairs:
+        return {}
+    from standoff.cad.instances import at_place
+    from standoff.cad.measures import common_volume
+
+    instances, _ = _instances(file, ENDINGS[file.suffix.lower()], unit)
+    named = {each.name: each for each in _numbered(instances)}
+    for name in {name for pair in pairs for name in pair} - set(named):
+        raise CadError(f"{file} has no part {shown(name)}.", "pairs", name)
+    return {(a, b): common_volume(at_place(named[a]), at_place(named[b])) for a, b in pairs}
+
+
 def reports_of(
     path: Any, *, heal: bool = False, tolerance: float | None = None
 ) -> tuple[PartReport, ...]:

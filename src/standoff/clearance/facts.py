@@ -85,4 +85,5 @@ def row_facts(row: Row) -> dict[str, Any]:
         "tolerance": row.tolerance,
         "allowed": None if fit is None else {"gap": fit.gap, "reason": fit.reason},
         "failure": row.failure or None,
+        **({} if row.common is None else {"common_volume": row.common}),
     }

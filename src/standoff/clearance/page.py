@@ -18,11 +18,13 @@ from standoff.clearance.facts import body_text
 from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
 from standoff.clearance.report import (
+    COMMON,
     Looked,
     Report,
     Row,
     Wanted,
     bound_texts,
+    common_text,
     gap_text,
     nearest_of,
     no_clearance,
@@ -159,6 +161,8 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
         lines.append(
             f"Every pair is proven to keep {at_least(report.least)} {unit}, or is allowed not to."
         )
+    if any(row.common is not None for row in report.rows):
+        lines.append(f"The {COMMON}.")
     if within_tolerance(report, unit):
         lines.append(f"Of these {within_tolerance(report, unit)}.")
     if not report.certified:
@@ -170,15 +174,18 @@ def _summary(scene: Source, report: Report, looked: Looked) -> str:
 def _table(report: Report, unit: str, *, timed: bool) -> str:
     label = escape(f" ({unit})" if unit else "")
     heads = ["", "verdict", "bodies", f"gap{label}", "proven between", "closest points"]
+    volumes = any(row.common is not None for row in report.rows)
+    cubed = escape(f" ({unit}³)" if unit else "")
+    heads += [f"common{cubed}"] if volumes else []
     heads += ["at (s)"] if timed else []
     heads.append("note")
-    numbers = {"gap" + label}
+    numbers = {"gap" + label, "common" + cubed}
     head = "".join(
         f'<th class="number">{h}</th>' if h in numbers else f"<th>{h}</th>" for h in heads
     )
     numbered = len(numbered_rows(report)) if not timed else 0
     body = "\n".join(
-        _row(row, str(k) if k <= numbered else "", timed=timed)
+        _row(row, str(k) if k <= numbered else "", timed=timed, volumes=volumes)
         for k, row in enumerate(report.rows, 1)
     )
     far = ""
@@ -197,7 +204,7 @@ def _table(report: Report, unit: str, *, timed: bool) -> str:
     )
 
 
-def _row(row: Row, number: str, *, timed: bool) -> str:
+def _row(row: Row, number: str, *, timed: bool, volumes: bool) -> str:
     answer = row.answer
     size = shown_size(answer)
     lower, upper = bound_texts(row)
@@ -216,6 +223,7 @@ def _row(row: Row, number: str, *, timed: bool) -> str:
         f'<td class="number">{gap_text(answer)}</td>',
         f"<td>≥ {lower}<br>≤ {upper}</td>",
         f"<td>{points}</td>",
+        *([f'<td class="number">{common_text(row)}</td>'] if volumes else []),
         *([f'<td class="number">{row.nearest.time:.6g}</td>'] if timed else []),
         f'<td class="note">{escape(printable("; ".join(filter(None, notes))))}</td>',
     ]

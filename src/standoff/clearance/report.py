@@ -101,6 +101,9 @@ class Row:
         Why it does not hold; empty where it does.
     tolerance : float
         By how much what is proven may miss what is required [length].
+    common : float or None
+        The volume that both have in common [length³], where that was asked of bodies that may
+        overlap, by OpenCASCADE's boolean operation: it is not proven. nan: the operation failed.
     """
 
     nearest: Nearest
@@ -109,6 +112,7 @@ class Row:
     fit: Fit | None
     failure: str
     tolerance: float
+    common: float | None = None
 
     @property
     def answer(self) -> PairAnswer | SolidPairAnswer:
@@ -340,6 +344,16 @@ def gap_text(answer: PairAnswer | SolidPairAnswer, digits: int = 6) -> str:
 def bound_texts(row: Row) -> tuple[str, str]:
     """Return the lower and the upper bound of a row, each rounded to its safe side."""
     return at_least(row.nearest.lower_bound), at_most(row.answer.upper_bound)
+
+
+COMMON = "volumes in common are by OpenCASCADE's boolean operation, not proven"
+
+
+def common_text(row: Row) -> str:
+    """Return the volume that both bodies of a row have in common, as far as it is known."""
+    if row.common is None:
+        return ""
+    return "failed" if math.isnan(row.common) else f"{row.common:.6g}"
 
 
 def within_tolerance(report: Report, unit: str) -> str:

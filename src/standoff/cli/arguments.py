@@ -166,6 +166,9 @@ class ClearanceCommand:
     """By how much what is proven may miss it; the touching tolerance of the parts if not given."""
     allow: Annotated[Path | None, arg(metavar="FITS.toml", help_behavior_hint="")] = None
     """Fits that are meant; docs/clearance.md describes the format."""
+    volume: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Of parts of a CAD file that overlap the volume that they have in common, too, by a boolean
+    operation of OpenCASCADE: it is not proven."""
     meshes: Annotated[MeshFlags, group("meshes")] = NO_INSTEAD
     workers: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1
     """Processes that share the reading of an assembly's parts; 1 if not given."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+import math
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from standoff.cad import read_cad
+from standoff.cad import common_volumes, read_cad
 from standoff.checks.units import conversion
 from standoff.clearance.assembly import AssemblyFile
 from standoff.clearance.checked_pairs import Scope, check
 from standoff.clearance.facts import report_facts
 from standoff.clearance.report import Looked, Report, Wanted
+from standoff.clearance.verdicts import Verdict
 from standoff.cli.arguments import ClearanceCommand
 from standoff.cli.check_cad import no_cad_file
 from standoff.cli.clearance_files import check_files, files_of
@@ -51,6 +53,8 @@ def run_on_assembly(command: ClearanceCommand) -> int:
     else:
         file, parts, _solids = _read(command)  # the world finds these as long as they are here
     report = _report(file, parts, wanted, scope_of(command))
+    if command.volume:
+        report = with_volumes(file, report)
     write_whole(files_of(command, file, report, NOTHING_MOVES))
     written = [path for path in (command.files.page, command.files.plot) if path is not None]
     if command.report.json:
@@ -95,6 +99,16 @@ def _read(command: ClearanceCommand) -> tuple[AssemblyFile, dict[str, Any], list
     colours = {name: part.colour[:3] for name, part in parts.items() if part.colour is not None}
     file = AssemblyFile(command.scene, assembly.source, assembly.unit, notes, places, colours)
     return file, bodies, solids
+
+
+def with_volumes(file: AssemblyFile, report: Report) -> Report:
+    """The report with the volumes that its parts have in common where they may overlap."""
+    over = Verdict.OVERLAPPING, Verdict.UNDECIDED, Verdict.CONTAINED
+    pairs = [row.names for row in report.rows if row.verdict in over]
+    found = common_volumes(file.file, pairs, unit=file.length_unit)
+    told = {names: math.nan if volume is None else volume for names, volume in found.items()}
+    rows = tuple(replace(row, common=told.get(row.names)) for row in report.rows)
+    return replace(report, rows=rows)
 
 
 def _facts(file: AssemblyFile, report: Report, written: list[Path]) -> dict[str, Any]:

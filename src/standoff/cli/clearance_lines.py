@@ -14,11 +14,13 @@ from rich.text import Text
 from standoff.clearance.assembly import AssemblyFile, Source
 from standoff.clearance.facts import body_text
 from standoff.clearance.report import (
+    COMMON,
     Far,
     Looked,
     Report,
     Row,
     bound_texts,
+    common_text,
     gap_text,
     no_clearance,
     within_tolerance,
@@ -92,6 +94,9 @@ def _table(rows: Sequence[Row], far: Sequence[Far], unit: str, *, timed: bool) -
     table.add_column("closest points")
     if timed:
         table.add_column("at")
+    volumes = any(row.common is not None for row in rows)
+    if volumes:
+        table.add_column(f"common ({unit}³)" if unit else "common", justify="right")
     for row in rows:
         cells = [
             Text(row.verdict.name, style=STYLES[row.verdict]),
@@ -100,7 +105,8 @@ def _table(rows: Sequence[Row], far: Sequence[Far], unit: str, *, timed: bool) -
             Text(_proven(row)),
             Text(_points(row)),
         ]
-        table.add_row(*cells, *([time_text(row.nearest.time)] if timed else []))
+        more = [time_text(row.nearest.time)] if timed else []
+        table.add_row(*cells, *more, *([common_text(row)] if volumes else []))
     for each in far:
         names = "\n".join(map(printable, each.names))
         table.add_row(Verdict.APART.name, Text(names), "", f"≥ {at_least(each.bound)}")
@@ -141,6 +147,8 @@ def _tail(
             told if report.clearance > -math.inf else f"none is proven: {no_clearance(report)}",
         )
     )
+    if any(row.common is not None for row in report.rows):
+        lines.append(line("common", COMMON))
     lines += _certified(report, looked)
     for k, (names, failure) in enumerate(report.failures):
         lines.append(line("fails" if k == 0 else "", f"{' - '.join(names)}: {failure}"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from standoff.cad.files import ENDINGS as CAD_ENDINGS
 from standoff.clearance.checked_pairs import Scope
 from standoff.clearance.fits import load_fits
 from standoff.clearance.report import Wanted
@@ -25,6 +26,8 @@ def check_options(command: ClearanceCommand) -> None:
         raise CommandError(f"--within: must be above zero, got {command.scope.within}")
     if command.scope.closest is not None and command.scope.closest < 1:
         raise CommandError(f"--closest: must be one or more, got {command.scope.closest}")
+    if command.volume and command.scene.suffix.lower() not in CAD_ENDINGS:
+        raise CommandError(f"--volume: only of a CAD file's parts, got {command.scene}")
     if command.motion and command.time is not None:
         raise CommandError("--time and --motion: give one of them, an instant or all frames")
 
