@@ -182,9 +182,9 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     begin(a, now, best, minima)
     if best[ABOVE] > 0.0:  # that pair is none of the minima now
         best[N_MINIMA] = 0.0
-    rest = rest_for(step, best[SIZE])
-    list_awake(front, farthest(best) + best[ROUNDING], rest, travel)
-    follow(a, now, front, travel, best, minima, counts)
+    goal = farthest(best) + best[ROUNDING]
+    list_awake(front, goal, rest_for(step, best[SIZE]), travel)
+    follow(a, now, front, goal, travel, best, minima, counts)
     anew, sure = frame(a, now, front, travel, best, minima, counts)
     tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)
     out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], counts), step
