@@ -241,3 +241,25 @@ def test_a_place_off_a_flat_face_tells_nothing_where_it_has_less() -> None:
     for beyond, true in ((5e-3, False), (-5e-3, True)):
         told = is_proven(solid.packed, IDENTITY, leaf, box, phi, -1.0, -least - beyond, at, counts)
         assert told is true
+
+
+@pytest.mark.parametrize(("name", "half"), [("ring", (0.8, 0.8)), ("oval", (0.8, 0.5))])
+def test_a_plane_is_closed_along_a_rim_at_once(name, half, rng) -> None:
+    """A height is a wave along a rim, circle or not: where it is greatest is no matter of cuts."""
+    solid = SOLIDS[name]()
+    ends = [k for k, leaf in enumerate(solid.leaves) if leaf.dim == 2 and leaf.cut]
+    ends = [k for k in ends if solid.leaves[k].kind == TORUS_THROUGH]
+    zero = (0.0, 0.0, 0.0)
+    for leaf in ends:
+        n = unit(rng)
+        box = np.array(solid.leaves[leaf].reals[:4])
+        height = leaf_jet_of(solid.packed, leaf, box[0], box[2])[0][2]
+        most = n[2] * height + np.hypot(half[0] * n[0], half[1] * n[1])
+        phi = Potential(TORUS_THROUGH, zero, zero, zero, tuple(n.tolist()), 0.0, 0.0, 1.0)
+        for spare, wanted in ((1e-12, True), (-1e-6, False)):
+            counts = np.zeros(8, dtype=np.int64)
+            asked = (box, phi, 1.0, most + spare, box[:3:2], counts)
+            reached = is_proven(solid.packed, IDENTITY, leaf, *asked)
+            assert not reached or wanted
+            assert counts[0] < 60
+    assert ends

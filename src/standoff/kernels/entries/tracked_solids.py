@@ -33,6 +33,7 @@ from standoff.kernels.solids.front_frame import (
     rest_for,
     rounding_of,
 )
+from standoff.kernels.solids.front_held import counted_apart, is_known_apart
 from standoff.kernels.solids.front_rows import (
     FRAME,
     GONE,
@@ -184,7 +185,8 @@ def apart_frame(sides, low, asked, front, search, counts, out):
         best[N_MINIMA] = 0.0
     goal = farthest(best) + best[ROUNDING]
     list_awake(front, goal, rest_for(step, best[SIZE]), travel)
-    follow(a, now, front, goal, travel, best, minima, counts)
+    known = is_known_apart(front, travel)
+    follow(a, now, front, goal, counted_apart(travel) if known else travel, best, minima, counts)
     anew, sure = frame(a, now, front, travel, best, minima, counts)
     tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)
     out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], counts), step

@@ -64,8 +64,9 @@ from standoff.kernels.solids.spatial_progress import (
 )
 from standoff.kernels.solids.spatial_tolerances import SHORTEST_PART
 
-# Boxes of a potential that did before: of points that were found just now, and where others can be.
-AGAIN_BOXES, ONCE_BOXES = 8, 2
+# Boxes of a potential that did before: of points that were found just now, for more than is asked
+# and for what is, as to try all others takes more; and where others can be.
+AGAIN_BOXES, SLOW_BOXES, ONCE_BOXES = 8, 100, 2
 # Of a pair of leaves' parts bounds are wanted that last for so many times more motion.
 LEAVES_AHEAD = 8.0
 # A pair of parts at the least distance that takes more boxes than this in each frame is cut, if one
@@ -175,7 +176,7 @@ def close_again(front, k, pair, aim, best, counts):
             return aim, way, phi
         if int(front.store[FRAME]) % RETRIED == 0:  # another way may prove more
             return -inf, way, phi
-    closed, phi = closed_again(way, goal, pair, AGAIN_BOXES, best, counts)
+    closed, phi = closed_again(way, goal, pair, SLOW_BOXES, best, counts)
     return goal if closed else -inf, way, phi
 
 
