@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -56,8 +58,13 @@ def test_ties_on_the_same_faces_are_joined_in_compiled_code(
     a, b, poses = sliding(31)[name]
     tracker = SolidTracker(a, b, minima=0.3)
     state = tracker.start(STILL, poses[0])
-    asked, sought = [], local_minima._gap_between
-    monkeypatch.setattr(local_minima, "_gap_between", lambda *of: asked.append(0) or sought(*of))
+    asked, sought = list[float](), local_minima._gap_between
+
+    def gap(*of: Any) -> float:
+        asked.append(sought(*of))
+        return asked[-1]
+
+    monkeypatch.setattr(local_minima, "_gap_between", gap)
     for pose in poses[1:7]:
         asked.clear()
         state, answer = tracker.step(state, STILL, pose)

@@ -45,11 +45,12 @@ def local_minima(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> lis
         return np.asarray(np.abs(distances[:k] - distances[k]) <= found.tolerance)
 
     def tied_alike(k: int) -> NDArray[np.bool_]:
-        return tied(k) & (parts[:k] == parts[k])
+        return np.asarray(tied(k) & (parts[:k] == parts[k]))
 
     def joined(k: int, i: int) -> bool:
-        most = max(distances[k], distances[i]) + found.tolerance
-        return _greatest_gap(pair, single[k], single[i], parts[k] == parts[i], most) <= most
+        most = float(max(distances[k], distances[i])) + found.tolerance
+        alike = bool(parts[k] == parts[i])
+        return _greatest_gap(pair, single[k], single[i], alike, most) <= most
 
     # what is on the same parts of the boundaries first, as it takes least
     sets = _sets(len(single), [(tied_alike, joined), (tied, joined)])
