@@ -46,7 +46,8 @@ def test_face_on_face_frames_are_as_queries_and_take_less(name: str) -> None:
         assert answer.status is other.status is so.Status.CONTINUUM
         assert answer.distance == pytest.approx(GAP, abs=1e-12)
         assert answer.lower_bound <= GAP <= answer.upper_bound
-        assert answer.continuum is not None and other.continuum is not None
+        assert answer.continuum is not None
+        assert other.continuum is not None
         assert answer.continuum.kind == other.continuum.kind == "surface"
     assert answers.evaluations.sum() < sum(each.counts.evaluations for each in cold)
 
