@@ -68,6 +68,7 @@ ACROSS = 24
 ROUNDED = 1e-13
 """Length, of parts of about 1: what less than a sample may be by its rounding."""
 DRAWS = draws(400)
+RIM_BOXES = 20
 
 
 @njit
@@ -241,3 +242,28 @@ def test_a_place_off_a_flat_face_tells_nothing_where_it_has_less() -> None:
     for beyond, true in ((5e-3, False), (-5e-3, True)):
         told = is_proven(solid.packed, IDENTITY, leaf, box, phi, -1.0, -least - beyond, at, counts)
         assert told is true
+
+
+@pytest.mark.parametrize(("name", "half"), [("ring", (0.8, 0.8)), ("oval", (0.8, 0.5))])
+def test_a_plane_is_closed_along_a_rim_at_once(name, half, rng) -> None:
+    """A height is a wave along a rim, circle or not: where it is greatest is no matter of cuts."""
+    solid = SOLIDS[name]()
+    ends = [k for k, leaf in enumerate(solid.leaves) if leaf.dim == 2 and leaf.cut]
+    ends = [k for k in ends if solid.leaves[k].kind == TORUS_THROUGH]
+    zero, n, seen = (0.0, 0.0, 0.0), unit(rng), False
+    for leaf in ends:
+        box = np.array(solid.leaves[leaf].reals[:4])
+        height = leaf_jet_of(solid.packed, leaf, box[0], box[2])[0][2]
+        steep = np.hypot(half[0] * n[0], half[1] * n[1])
+        u, v = np.square(half) * n[:2] / steep
+        on_top = box[0] <= u <= box[1] and box[2] <= v <= box[3]
+        phi = Potential(TORUS_THROUGH, zero, zero, zero, tuple(n.tolist()), 0.0, 0.0, 1.0)
+        for spare in (1e-12, -1e-6):
+            counts = np.zeros(8, dtype=np.int64)
+            asked = (box, phi, 1.0, n[2] * height + steep + spare, box[:3:2], counts)
+            told = is_proven(solid.packed, IDENTITY, leaf, *asked)
+            assert told or spare < 0.0
+            assert not (told and on_top and spare < 0.0)
+            assert counts[0] <= RIM_BOXES
+            seen |= on_top
+    assert seen

@@ -44,7 +44,7 @@ WORK = {
     "coupler": Work("the virtual coupler", 2, 3, 1),
     "servo": Work("the servo loop", 25, 60, 3),
     "world": Work("worlds of many bodies", 8, 45, 10),
-    "solids": Work("solids in space", 50, 65, 20),
+    "solids": Work("solids in space", 50, 65, 22),
     "planar": Work("planar solids", 15, 20, 4),
 }
 

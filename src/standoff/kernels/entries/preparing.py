@@ -88,11 +88,13 @@ def prepare_tracked_solids() -> None:
     )
 
     needed = [tracked_solids.solid_frames, solids.boundary_distance, solids.solid_point]
+    needed += [solids.leaf_points, solids.nearest_in_leaves]
     needed += [
         tracked_solids.number_minima,
         tracked_solids.placed_beside,
         minima.stationary,
         minima.one_place,
+        minima.greatest_gap,
     ]
     needed += [minima.span_patches, solid_contact.follow_contact, solid_contact.signed_minima]
     needed += [solid_contact.pieces_parted, solid_points.point_depth]

@@ -1,9 +1,20 @@
 """The distance of two solids' boundaries as Python calls it."""
 
+from math import inf
+
 from numba import types
 
 from standoff.kernels.compiler.decorators import entry, kernel, pointer, reals_on_stack
-from standoff.kernels.compiler.entry import BOOL, INT, INTS, READ, WRITE, WRITE_INTS
+from standoff.kernels.compiler.entry import (
+    BOOL,
+    INT,
+    INTS,
+    READ,
+    READ_ROWS,
+    ROWS,
+    WRITE,
+    WRITE_INTS,
+)
 from standoff.kernels.pair.derivatives import write_gradient
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.local_side import on_one_side, tell_beside
@@ -63,19 +74,31 @@ def solid_point(solid, pose, leaf, u, v, out):
             out[3 * i + k] = vector[k]
 
 
-@entry(SOLIDS, READ, INTS, WRITE, WRITE_INTS, work="solids")
-def nearest_in_leaves(solids, pose, leaves, values, counts):
-    """From the parameters values[:4] of two leaves to those of a local minimum, and the distance in
-    values[4]."""
+@entry(SOLIDS, READ_ROWS, ROWS, work="solids")
+def leaf_points(solids, rows, out):
+    """Of each row (distance, leaves, parameters) the points of A and B, own frames, (n, 6)."""
+    a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], STILL, S.OUTSIDE)
+    for i in range(len(rows)):
+        x = leaf_jet(a, int(rows[i, 1]), rows[i, 3], rows[i, 4])[0]
+        y = leaf_jet(b, int(rows[i, 2]), rows[i, 5], rows[i, 6])[0]
+        for k in range(3):
+            out[i, k], out[i, 3 + k] = x[k], y[k]
+
+
+@entry(SOLIDS, READ, ROWS, WRITE_INTS, work="solids")
+def nearest_in_leaves(solids, pose, rows, counts):
+    """From the parameters of each row (distance, leaves, parameters) to those of a local minimum in
+    the same leaves, and its distance; infinity where it is off a solid."""
     a, b = side_at(solids[0], STILL, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
-    start = (values[0], values[1], values[2], values[3])
-    box_a, box_b = leaf_box(a, leaves[0]), leaf_box(b, leaves[1])
-    q, distance = nearest(a, leaves[0], box_a, b, leaves[1], box_b, start, pointer(counts, 0))
-    for k in range(4):
-        values[k] = q[k]
-    values[4] = distance
-    on_both = on_solid(a, leaves[0], q[0], q[1]) and on_solid(b, leaves[1], q[2], q[3])
-    values[5] = 1.0 if on_both else 0.0
+    for i in range(len(rows)):
+        m, n = int(rows[i, 1]), int(rows[i, 2])
+        start = (rows[i, 3], rows[i, 4], rows[i, 5], rows[i, 6])
+        box_a, box_b = leaf_box(a, m), leaf_box(b, n)
+        q, distance = nearest(a, m, box_a, b, n, box_b, start, pointer(counts, 0))
+        for k in range(4):
+            rows[i, 3 + k] = q[k]
+        on_both = on_solid(a, m, q[0], q[1]) and on_solid(b, n, q[2], q[3])
+        rows[i, 0] = distance if on_both else inf
 
 
 @entry(SOLID, READ, INT, READ, WRITE, work="solids")

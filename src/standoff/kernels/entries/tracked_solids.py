@@ -33,6 +33,7 @@ from standoff.kernels.solids.front_frame import (
     rest_for,
     rounding_of,
 )
+from standoff.kernels.solids.front_held import counted_apart, is_known_apart
 from standoff.kernels.solids.front_rows import (
     FRAME,
     GONE,
@@ -182,9 +183,10 @@ def apart_frame(sides, low, asked, front, search, counts, out):
     begin(a, now, best, minima)
     if best[ABOVE] > 0.0:  # that pair is none of the minima now
         best[N_MINIMA] = 0.0
-    rest = rest_for(step, best[SIZE])
-    list_awake(front, farthest(best) + best[ROUNDING], rest, travel)
-    follow(a, now, front, travel, best, minima, counts)
+    goal = farthest(best) + best[ROUNDING]
+    list_awake(front, goal, rest_for(step, best[SIZE]), travel)
+    known = is_known_apart(front, travel)
+    follow(a, now, front, goal, counted_apart(travel) if known else travel, best, minima, counts)
     anew, sure = frame(a, now, front, travel, best, minima, counts)
     tell(a, now, best, minima, min(low - step, best[LEAST]), front, counts, out)
     out[ENDED], out[MOTION] = how_ended(a, now, best, minima, out[BOUND], counts), step

@@ -41,6 +41,7 @@ from standoff.kernels.solids.spatial_closing import (
     split,
     widths,
 )
+from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import (
     leaf_ints,
     leaf_jet,
@@ -63,12 +64,13 @@ from standoff.kernels.solids.spatial_progress import (
 )
 from standoff.kernels.solids.spatial_tolerances import SHORTEST_PART
 
-# Boxes of a potential that did before: of points that were found just now, and where others can be.
-AGAIN_BOXES, ONCE_BOXES = 8, 2
+# Boxes of a potential that did before: of points that were found just now, for more than is asked
+# and for what is, as to try all others takes more; and where others can be.
+AGAIN_BOXES, SLOW_BOXES, ONCE_BOXES = 8, 100, 2
 # Of a pair of leaves' parts bounds are wanted that last for so many times more motion.
 LEAVES_AHEAD = 8.0
-# A pair of parts at the least distance that takes more boxes than this in each frame is cut, while
-# it is longer than so many times what B moves.
+# A pair of parts at the least distance that takes more boxes than this in each frame is cut, if one
+# half is farther apart, and while it is longer than so many times what B moves.
 MANY_BOXES, WIDE = 8, 4.0
 # The same, of parts that trimming curves may cut, with the parts of those.
 MANY_ON_TRIMS = 40
@@ -174,7 +176,7 @@ def close_again(front, k, pair, aim, best, counts):
             return aim, way, phi
         if int(front.store[FRAME]) % RETRIED == 0:  # another way may prove more
             return -inf, way, phi
-    closed, phi = closed_again(way, goal, pair, AGAIN_BOXES, best, counts)
+    closed, phi = closed_again(way, goal, pair, SLOW_BOXES, best, counts)
     return goal if closed else -inf, way, phi
 
 
@@ -227,11 +229,11 @@ def close_row(front, k, pair, ball, travel, best, minima, counts):
         low = aim if way >= 0 else -inf
     if low < goal and distance < goal and not is_stopped(best, counts):
         low, phi = closed_off_trim(goal, ahead, pa, pb, best, counts)
-    many = counts[BOXES] - boxes > many_boxes(pair)
-    if many and distance < goal + ahead and is_wide(pair, travel):
-        low = -inf
     if low >= goal:
         keep_proven(front, k, low, way, phi, ball, travel, best)
+        many = counts[BOXES] - boxes > many_boxes(pair)
+        if many and distance < goal + ahead and pays_to_cut(pair, goal, travel, counts):
+            cut_row(front, k, pair, best)
         return KEPT
     # what needs more than half of a frame's time is cut, all else is looked at in the next frame
     if is_stopped(best, counts) and begun > 0.5 * best[STOP]:
@@ -244,17 +246,41 @@ def close_row(front, k, pair, ball, travel, best, minima, counts):
 def cut_row(front, k, pair, best):
     """Cut the longer part in two; False: it is too short, or there is no room."""
     pa, pb, q, _ = pair
+    parts, longest = halves_of(pa, pb)
+    if longest <= SHORTEST_PART * best[SIZE]:
+        return False
+    return put_parts(front, k, (pa.leaf, pb.leaf), parts, q)
+
+
+@kernel
+def halves_of(pa, pb):
+    """(boxes of A and B of both halves, with the longer of two parts cut, its length)."""
     au, av = widths(pa.side, pa.leaf, pa.box)
     bu, bv = widths(pb.side, pb.leaf, pb.box)
-    if max(max(au, av), max(bu, bv)) <= SHORTEST_PART * best[SIZE]:
-        return False
     if max(au, av) >= max(bu, bv):
         first, second = split(pa.box, au >= av)
-        parts = (first, pb.box), (second, pb.box)
-    else:
-        first, second = split(pb.box, bu >= bv)
-        parts = (pa.box, first), (pa.box, second)
-    return put_parts(front, k, (pa.leaf, pb.leaf), parts, q)
+        return ((first, pb.box), (second, pb.box)), max(au, av)
+    first, second = split(pb.box, bu >= bv)
+    return ((pa.box, first), (pa.box, second)), max(bu, bv)
+
+
+@kernel
+def holds(box, u, v):
+    return box.u0 <= u <= box.u1 and box.v0 <= v <= box.v1
+
+
+@kernel
+def pays_to_cut(pair, goal, travel, counts):
+    """Would one half of a part that is wide rest for some frames? Of a valley that goes on through
+    both halves each would take as many boxes as the whole."""
+    if not is_wide(pair, travel):
+        return False
+    pa, pb, q, _ = pair
+    first, second = halves_of(pa, pb)[0]
+    here = holds(first[0], q[0], q[1]) and holds(first[1], q[2], q[3])
+    box_a, box_b = second if here else first
+    distance = nearest(pa.side, pa.leaf, box_a, pb.side, pb.leaf, box_b, q, counts)[1]
+    return distance >= goal + travel.ahead
 
 
 @kernel

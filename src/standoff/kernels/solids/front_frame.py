@@ -9,7 +9,7 @@ from standoff.kernels.compiler.decorators import kernel, small
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.front_apart import hold_all
 from standoff.kernels.solids.front_branches import follow_branches
-from standoff.kernels.solids.front_close import tied
+from standoff.kernels.solids.front_close import holds, tied
 from standoff.kernels.solids.front_held import counted_apart, hold_rows, is_known_apart
 from standoff.kernels.solids.front_look import asked_of, descend, settle_row, tell_open
 from standoff.kernels.solids.front_minima import find_minima
@@ -20,6 +20,7 @@ from standoff.kernels.solids.front_rows import (
     LATE,
     MAKING,
     N_AWAKE,
+    N_DUE,
     N_MADE,
     N_ROWS,
     RESTS_UP_TO,
@@ -31,9 +32,11 @@ from standoff.kernels.solids.front_rows import (
     awake_row,
     bound_key,
     box_of_row,
+    due_row,
     is_due,
     is_passed_over,
     is_shut,
+    put_due,
 )
 from standoff.kernels.solids.spatial_boxes import node_centre, node_reach
 from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
@@ -129,14 +132,21 @@ def begin(a, b, best, minima):
 
 
 @kernel
-def follow(a, b, front, travel, best, minima, counts):
-    """Newton's method in the rows that hold the witness points."""
+def follow(a, b, front, goal, travel, best, minima, counts):
+    """List the rows that may be due in this frame, for goals up to `goal`, and go on by Newton's
+    method in those that hold the witness points."""
     q = (best[AT], best[AT + 1], best[AT + 2], best[AT + 3])
     leaf_a, leaf_b = best[LEAF_A], best[LEAF_B]
-    most = best[LEAST] + travel.gone
+    most, farther = best[LEAST] + travel.gone, goal + travel.gone
+    front.store[N_DUE] = 0.0
     for i in range(int(front.store[N_AWAKE])):
         k = awake_row(front, i)
-        if bound_key(front, k) > most:
+        bound = bound_key(front, k)
+        if bound >= farther:
+            continue
+        if is_due(front, k, goal, travel):
+            put_due(front, k)
+        if bound > most:
             continue
         o = ROW_REALS * k
         if front.rows[o + ROW_A] == leaf_a and front.rows[o + ROW_B] == leaf_b:
@@ -146,15 +156,11 @@ def follow(a, b, front, travel, best, minima, counts):
 
 
 @kernel
-def holds(box, u, v):
-    return box.u0 <= u <= box.u1 and box.v0 <= v <= box.v1
-
-
-@kernel
 def make_front(front):
     """One row, of both roots."""
     front.store[N_ROWS], front.store[MAKING], front.store[COST] = 0.0, 1.0, 0.0
-    front.store[N_AWAKE], front.store[RESTS_UP_TO], front.store[LATE] = 0.0, -inf, 0.0
+    front.store[N_AWAKE], front.store[N_DUE] = 0.0, 0.0
+    front.store[RESTS_UP_TO], front.store[LATE] = -inf, 0.0
     add_row(front, -1, -1, (NOWHERE, NOWHERE), -inf, (0.0, 0.0, 0.0, 0.0), False)
 
 
@@ -178,8 +184,8 @@ def settle_oldest(a, b, front, age, travel, best, minima, counts):
     if age > 0.0:
         low = tied(best) - age * travel.ahead / FRAMES_AHEAD
     store[LATE], i = HURRIED if age == 0.0 else 1.0, 0
-    while i < int(store[N_AWAKE]) and evaluations(counts) <= best[BUDGET]:
-        k = awake_row(front, i)
+    while i < int(store[N_DUE]) and evaluations(counts) <= best[BUDGET]:
+        k = due_row(front, i)
         i += 1
         key = apart_to(front, k) if age == 0.0 else bound_key(front, k)
         if key - travel.gone < low and best[MET] == 0.0:
@@ -196,8 +202,8 @@ def settle_rows(a, b, front, travel, best, minima, counts):
             settle_oldest(a, b, front, age, travel, best, minima, counts)
     best[OPEN], best[N_OPEN], store[LATE] = inf, 0.0, 0.0
     i = 0
-    while i < int(store[N_AWAKE]) and best[MET] == 0.0:
-        k = awake_row(front, i)
+    while i < int(store[N_DUE]) and best[MET] == 0.0:
+        k = due_row(front, i)
         i += 1
         # most rows rest, by their keys alone: nothing more is asked of any
         if not is_due(front, k, tied(best), travel):
@@ -251,8 +257,8 @@ def frame(a, b, front, travel, best, minima, counts):
         if best[N_OPEN] == 0.0:
             store[N_MADE], store[MAKING] = store[N_ROWS], 0.0
     # what rests, and may be as near as the nearest, is gone through all the same
-    for i in range(int(store[N_AWAKE])):
-        k = awake_row(front, i)
+    for i in range(int(store[N_DUE])):
+        k = due_row(front, i)
         if best[MET] == 0.0 and is_passed_over(front, k, tied(best), travel):
             if evaluations(counts) <= best[BUDGET]:
                 descend(a, b, front, k, best, minima, counts)
@@ -270,8 +276,8 @@ def bound_found(front, travel, best, minima):
     n = int(best[N_MINIMA])
     for i in range(n):
         minima[MINIMUM_REALS * i + BOUND] = minima[MINIMUM_REALS * i]
-    for j in range(int(front.store[N_AWAKE])):
-        k = awake_row(front, j)
+    for j in range(int(front.store[N_DUE])):
+        k = due_row(front, j)
         low = bound_key(front, k) - travel.gone
         if low >= farthest(best) or is_shut(front, k, travel):
             continue

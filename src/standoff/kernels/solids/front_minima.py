@@ -13,13 +13,13 @@ from standoff.kernels.solids.front_rows import (
     CUT,
     KEPT,
     KEY_REALS,
-    N_AWAKE,
+    N_DUE,
     OPEN_ROW,
     RESTS_TO,
     ROW_A,
     ROW_REALS,
     ROW_WAY,
-    awake_row,
+    due_row,
     is_due,
     open_up,
 )
@@ -47,8 +47,8 @@ def find_minima(a, b, front, travel, best, minima, counts):
     """Keep the local minima below best[ABOVE], at most one of each pair of parts. What there
     is no time for counts as lost."""
     i = 0
-    while i < int(front.store[N_AWAKE]) and best[MET] == 0.0:
-        told, k = KEPT, awake_row(front, i)
+    while i < int(front.store[N_DUE]) and best[MET] == 0.0:
+        told, k = KEPT, due_row(front, i)
         rests = front.keys[KEY_REALS * k + RESTS_TO] > travel.gone
         if not rests and is_due(front, k, farthest(best), travel):
             carry_row(front, k, farthest(best) + best[ROUNDING], travel)

@@ -35,17 +35,18 @@ UNSEEN, NO_WAY = -2.0, -1.0
 KEPT, CUT, GONE_ROW, OPEN_ROW = 0, 1, 2, 3
 # Of each row three numbers: bound and shut, both plus the motion when they were proven; and up to
 # which motion Newton's method is not run for local minima alone. And beside them an entry of the
-# list of rows that are awake.
-KEY_REALS, RESTS_TO, AWAKE = 4, 2, 3
+# list of rows that are awake, and of those of them that may be due in this frame.
+KEY_REALS, RESTS_TO, AWAKE, DUE = 5, 2, 3, 4
 # What is kept from frame to frame beside the rows: how many rows there are, the motion, how many
 # the front had when it was made, how many frames there were, 1 until a front that is being made
 # has no open rows, and how many evaluations it took to make it; how many branches there are,
 # what the next new one is called, and how many have come to the place of another one in this call.
 # How many rows are awake; all others rest up to a motion, for goals up to a length; 1 if the
-# last frame ran out of time; and up to which motion the solids are known to stay apart.
+# last frame ran out of time; and up to which motion the solids are known to stay apart. How many
+# rows may be due in this frame.
 N_ROWS, GONE, N_MADE, FRAME, MAKING, COST, N_BRANCHES, NEXT_BRANCH = 0, 1, 2, 3, 4, 5, 6, 7
-N_MERGED, N_AWAKE, RESTS_UP_TO, RESTS_BELOW, LATE, KNOWN = 8, 9, 10, 11, 12, 13
-STORE_REALS = 14
+N_MERGED, N_AWAKE, RESTS_UP_TO, RESTS_BELOW, LATE, KNOWN, N_DUE = 8, 9, 10, 11, 12, 13, 14
+STORE_REALS = 15
 
 
 # Of `LATE`: while rows are looked at in which the solids may come together soon.
@@ -116,6 +117,7 @@ def add_row(front, i, j, boxes, bound, q, known):
         front.rows[o + ROW_AT + k] = q[k]
     front.store[N_ROWS] += 1.0
     awaken(front, n)
+    put_due(front, n)
     return True
 
 
@@ -129,6 +131,18 @@ def awaken(front, k):
 def awake_row(front, i):
     """The i-th row that is awake; they ascend."""
     return int(front.keys[KEY_REALS * i + AWAKE])
+
+
+@kernel
+def put_due(front, k):
+    front.keys[KEY_REALS * int(front.store[N_DUE]) + DUE] = k
+    front.store[N_DUE] += 1.0
+
+
+@kernel
+def due_row(front, i):
+    """The i-th row that may be due in this frame; all that come up in it are among them."""
+    return int(front.keys[KEY_REALS * i + DUE])
 
 
 @kernel

@@ -131,7 +131,7 @@ def _places(pair: PlacedPair, found: Found, senses: tuple[int, int], above: floa
     if above > 0.0:
         return local_minima(pair, found, senses)
     rows = [found.best, *_spread(pair, found.minima)[:MOST_TIES]]
-    return distinct(pair, [pair.place(row, senses) for row in rows])
+    return distinct(pair, pair.places(rows, senses))
 
 
 def _spread(pair: PlacedPair, rows: Array) -> list[Array]:
@@ -165,7 +165,7 @@ def told_apart(
     if sought.above > 0.0:  # of each set of nearest pairs only one is among the local minima
         tied = replace(found, minima=found.minima[found.minima[:, 0] <= most])
         ties = _places(pair, tied, senses, 0.0)
-    continuum = continuum_of(pair, ties, found, senses)
+    continuum = continuum_of(pair, ties, found)
     if found.lower <= 0.0:
         # what stays open may be that the boundaries meet, so nothing is known below
         found = replace(found, lower=-np.inf)
@@ -237,8 +237,8 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
     common = pair.least(senses, sought._replace(above=0.5 * sought.tolerance))
     found = _contacts(pair, common, senses)
     near = _places(pair, found, senses, 0.0)
-    continuum = continuum_of(pair, near, found, senses)
-    normals = np.array([pair.place(row, senses).normal for row in _nearest(found)])
+    continuum = continuum_of(pair, near, found)
+    normals = np.array([each.normal for each in pair.places(_nearest(found), senses)])
     way = parted(normals, found.tolerance, lambda by: gap_of(pair.moved(by)) is not None)
     if way == np.inf:
         # what proves that they touch takes less than looking for a ball beside each common point

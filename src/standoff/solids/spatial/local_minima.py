@@ -3,12 +3,14 @@ are one, each once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
+from standoff.kernels.entries.minima import greatest_gap
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.kernels.solids.spatial_tolerances import SURE_NORMAL, VALLEY
@@ -17,42 +19,64 @@ from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import distance_to_boundary
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import is_minimum
-from standoff.solids.spatial.ties import is_same
+from standoff.solids.spatial.ties import same_as, spots_of
 
 # Where between two pairs the boundaries are looked at: what is half way may be on another piece of
 # them by symmetry.
-BETWEEN = (0.5, 0.19, 0.81)
+BETWEEN = np.array([0.5, 0.19, 0.81])
 
 
 def local_minima(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> list[Place]:
     """All that were found, the nearest first; of each set of nearest pairs one."""
-    places = [pair.place(row, senses) for row in [found.best, *found.minima]]
+    places = pair.places([found.best, *found.minima], senses)
     places = [each for k, each in enumerate(places) if k == 0 or is_minimum(pair, each)]
+    spots = spots_of(places)
 
-    def same(place: Place, other: Place) -> bool:
-        near = abs(place.distance - other.distance) <= found.tolerance
-        return near and is_same(place, other, pair.size)
+    def same(k: int) -> NDArray[np.bool_]:
+        near = np.abs(spots[:k, 6] - spots[k, 6]) <= found.tolerance
+        return np.asarray(near & same_as(spots, k, pair.size)[:k])
 
-    def joined(place: Place, other: Place) -> bool:
-        return _are_joined(pair, place, other, found.tolerance)
+    sets = _sets(len(places), [(same, lambda k, i: True)])
+    single = [_best(pair, [places[i] for i in each]) for each in sets]
+    distances = np.array([place.distance for place in single])
+    parts = np.unique(_parts_of(pair, single), axis=0, return_inverse=True)[1].ravel()
 
-    single = [_best(pair, each) for each in _sets(places, same)]
-    return [_best(pair, each) for each in _sets(single, joined)]
+    def tied(k: int) -> NDArray[np.bool_]:
+        return np.asarray(np.abs(distances[:k] - distances[k]) <= found.tolerance)
+
+    def tied_alike(k: int) -> NDArray[np.bool_]:
+        return np.asarray(tied(k) & (parts[:k] == parts[k]))
+
+    def joined(k: int, i: int) -> bool:
+        most = float(max(distances[k], distances[i])) + found.tolerance
+        alike = bool(parts[k] == parts[i])
+        return _greatest_gap(pair, single[k], single[i], alike, most) <= most
+
+    # what is on the same parts of the boundaries first, as it takes least
+    sets = _sets(len(single), [(tied_alike, joined), (tied, joined)])
+    return [_best(pair, [single[i] for i in each]) for each in sets]
 
 
-def _sets(places: list[Place], are_one: Callable[[Place, Place], bool]) -> list[list[Place]]:
-    """Those that are one, or one with others that are, each set in the order of its first."""
-    sets: list[list[Place]] = []
-    for place in places:
-        mine = [each for each in sets if any(are_one(place, other) for other in each)]
-        if not mine:
-            sets.append([place])
-            continue
-        mine[0].append(place)
-        for other in mine[1:]:
-            mine[0].extend(other)
-            sets = [each for each in sets if each is not other]
-    return sets
+def _sets(
+    n: int, passes: Sequence[tuple[Callable[[int], NDArray[np.bool_]], Callable[[int, int], bool]]]
+) -> list[list[int]]:
+    """Those of `n` that are one, or one with others that are; sets in the order of their first.
+    `passes`: which before the k-th may be one with it, and whether two are."""
+    first = np.arange(n)
+    for may_be, are_one in passes:
+        for k in range(n):
+            for i in np.flatnonzero(may_be(k) & (first[:k] != first[k])).tolist():
+                low, high = sorted((first[i], first[k]))
+                if low < high and are_one(k, i):
+                    first[first == high] = low
+    return [np.flatnonzero(first == k).tolist() for k in np.unique(first)]
+
+
+def _parts_of(pair: PlacedPair, places: Sequence[Place]) -> NDArray[np.int64]:
+    """The parts of both boundaries, and the charts, that places are on: rows (n, 4)."""
+    leaves = np.array([place.row[1:3] for place in places]).astype(np.int64)
+    sides = [solid.leaf_table.chart[leaves[:, k]] for k, solid in enumerate((pair.a, pair.b))]
+    return np.concatenate(sides, axis=1)
 
 
 def _best(pair: PlacedPair, places: list[Place]) -> Place:
@@ -71,12 +95,17 @@ def _best(pair: PlacedPair, places: list[Place]) -> Place:
     return replace(best, row=row)
 
 
-def _are_joined(pair: PlacedPair, place: Place, other: Place, tolerance: float) -> bool:
-    """Are those between two pairs as near?"""
-    if abs(place.distance - other.distance) > tolerance:
-        return False
-    most = max(place.distance, other.distance) + tolerance
-    return all(_gap_between(pair, place, other, share) <= most for share in BETWEEN)
+def _greatest_gap(pair: PlacedPair, place: Place, other: Place, alike: bool, most: float) -> float:
+    """How far those between two pairs are apart, at most, as far as it matters whether this is more
+    than `most`. `alike`: on the same parts."""
+    if alike:
+        rows = np.array([place.row[:7], other.row[:7]])
+        return float(greatest_gap((pair.a.packed, pair.b.packed), pair.relative, rows, BETWEEN))
+    gap = 0.0
+    for share in BETWEEN:
+        if gap <= most:
+            gap = max(gap, _gap_between(pair, place, other, float(share)))
+    return gap
 
 
 def _gap_between(pair: PlacedPair, place: Place, other: Place, share: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -9,7 +10,7 @@ from itertools import islice
 import numpy as np
 
 from standoff.geometry.validation import Array
-from standoff.kernels.entries.solids import gradient, nearest_in_leaves
+from standoff.kernels.entries.solids import gradient, leaf_points, nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.kernels.solids.spatial_tolerances import SURE_NORMAL
@@ -114,14 +115,25 @@ class PlacedPair:
 
     def place(self, row: Array, senses: tuple[int, int]) -> Place:
         """Of a row (distance, leaf_a, leaf_b, parameters)."""
-        leaf_a, leaf_b = int(row[1]), int(row[2])
-        x = leaf_jet_of(self.a.packed, leaf_a, row[3], row[4])[0] @ self.ra.T + self.pa
-        y = leaf_jet_of(self.b.packed, leaf_b, row[5], row[6])[0] @ self.rb.T + self.pb
-        away = y - x
-        length = float(np.linalg.norm(away))
-        told = length > SURE_NORMAL * self.size
-        normal = away / length if told else self._normal_at(row, senses)
-        return Place(row, x, y, normal)
+        return self.places([row], senses)[0]
+
+    def places(self, rows: Sequence[Array] | Array, senses: tuple[int, int]) -> list[Place]:
+        """Of rows (distance, leaf_a, leaf_b, parameters)."""
+        found = []
+        for row, x, y in zip(rows, *self.points_of(np.array(rows)), strict=True):
+            away = y - x
+            length = float(np.linalg.norm(away))
+            told = length > SURE_NORMAL * self.size
+            normal = away / length if told else self._normal_at(row, senses)
+            found.append(Place(row, x, y, normal))
+        return found
+
+    def points_of(self, rows: Array) -> tuple[Array, Array]:
+        """The points (n, 3) of A and of B of rows, world axes."""
+        own = np.empty((len(rows), 6))
+        leaf_points((self.a.packed, self.b.packed), rows, own)
+        x, y = own[:, None, :3] @ self.ra.T, own[:, None, 3:] @ self.rb.T
+        return x[:, 0] + self.pa, y[:, 0] + self.pb
 
     def _normal_at(self, row: Array, senses: tuple[int, int]) -> Array:
         """From a face, or across two edges, where the points are too near to each other for a
@@ -178,17 +190,14 @@ class PlacedPair:
         gradient(np.concatenate(arms), False, to)
         return to
 
-    def found_from(self, row: Array, start: Array) -> Array | None:
-        """A row of the local minimum that Newton's method finds in a row's leaves from other
-        parameters (4,); None where it is off a solid."""
-        values = np.array([*start, 0.0, 0.0])
-        leaves = row[1:3].astype(np.int64)
+    def found_from(self, row: Array, starts: Array, most: float) -> Array:
+        """Rows of the local minima up to a distance that Newton's method finds in a row's leaves
+        from other parameters (n, 4), on both solids."""
+        rows = np.zeros((len(starts), 8))
+        rows[:, 1:3], rows[:, 3:7] = row[1:3], starts
         counts = np.zeros(8, dtype=np.int64)
-        solids = (self.a.packed, self.b.packed)
-        nearest_in_leaves(solids, self.relative, leaves, values, counts)
-        if values[5] == 0.0:
-            return None
-        return np.array([values[4], row[1], row[2], *values[:4], 0.0])
+        nearest_in_leaves((self.a.packed, self.b.packed), self.relative, rows, counts)
+        return rows[rows[:, 0] <= most]
 
     def depths(self, point: Array) -> tuple[float, float, Array, Array, int]:
         """(how deep a world point is in A and in B, at least; how each grows there; how many

@@ -31,7 +31,7 @@ def patches_of(
     """Of each local minimum up to four pairs out of those that were found: those whose distance is
     from its own to `wider` more, along nearly the same normal, and nearer to it than to any other
     minimum. Its own is one of them, unless others are as near and span the rest."""
-    rows, sets = rows_of(pair, minima, [pair.place(row, senses) for row in found.minima])
+    rows, sets = rows_of(pair, minima, pair.places(found.minima, senses))
     best = np.zeros(C.BEST_REALS)
     best[C.N_MINIMA], best[C.SIZE], best[C.TOLERANCE] = len(rows), pair.size, found.tolerance
     span_patches(best, rows.ravel(), wider, sets.ravel(), len(minima))

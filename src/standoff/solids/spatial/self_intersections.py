@@ -238,12 +238,11 @@ def _deepest(solid: SolidModel, group: OwnPairs, rows: Array) -> dict[Key, SelfI
             places[key] = place
         # and where Newton's method ended at the rim of a face: other points of the same leaves
         if places[key].depth == 0.0 and (apart or len(group.joint) == 0):
-            for start in (first[3:7], *starts(pair, first)):
-                row = pair.found_from(first, start)
-                if row is not None and row[0] <= common:
-                    other = _place(solid, row)
-                    if other.depth > places[key].depth and _away(group.joint, other):
-                        places[key] = other
+            tried = np.vstack([first[3:7], starts(pair, first)])
+            for row in pair.found_from(first, tried, common):
+                other = _place(solid, row)
+                if other.depth > places[key].depth and _away(group.joint, other):
+                    places[key] = other
     return places
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakValueDictionary
 
 import numpy as np
@@ -18,9 +18,9 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
+from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.motion.pose import Pose
 from standoff.read_only import KeepsReadOnly
-from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
 from standoff.wording import printable
@@ -36,6 +36,26 @@ _models: WeakValueDictionary[int, SolidModel] = WeakValueDictionary()
 def known_model(boundary: Boundary) -> SolidModel | None:
     """The `Solid` of a boundary that somebody has."""
     return _models.get(id(boundary))
+
+
+class LeafTable(NamedTuple):
+    """The leaves of a solid.
+
+    parts : the face, edge or vertex that each is of.
+    feature : the number of that.
+    chart : (n, 2) the same, and the number of its chart.
+    dim : of how many parameters it is.
+    plane : is it of a plane? What is parallel to one is near it all over, and the strips and
+        corners beside a plane are as near at their ends only.
+    ends : (n, 4) of its parameters.
+    """
+
+    parts: list[Feature]
+    feature: NDArray[np.int64]
+    chart: NDArray[np.int64]
+    dim: NDArray[np.int64]
+    plane: NDArray[np.bool_]
+    ends: Array
 
 
 class SolidModel(KeepsReadOnly):
@@ -161,12 +181,26 @@ class SolidModel(KeepsReadOnly):
         """What the kernels read."""
         return self.boundary.ints, self.boundary.reals, self.own, self.numbers
 
-    def part_of(self, leaf: int) -> Feature:
-        """The face, edge or vertex of the boundary that a leaf is of."""
-        part: Leaf = self.leaves[leaf]
+    @cached_property
+    def leaf_table(self) -> LeafTable:
+        """Its leaves in arrays."""
         first = (0, self.boundary.n_faces, self.boundary.n_faces + self.boundary.n_edges)
         names = ("face", "edge", "vertex")
-        return Feature(names[2 - part.dim], part.feature - first[2 - part.dim])
+        parts = [
+            Feature(names[2 - leaf.dim], leaf.feature - first[2 - leaf.dim]) for leaf in self.leaves
+        ]
+        return LeafTable(
+            parts,
+            np.array([leaf.feature for leaf in self.leaves]),
+            np.array([(leaf.feature, leaf.chart) for leaf in self.leaves]),
+            np.array([leaf.dim for leaf in self.leaves]),
+            np.array([leaf.dim == 2 and leaf.kind == TORUS_THROUGH for leaf in self.leaves]),
+            np.array([leaf.reals[:4] for leaf in self.leaves]),
+        )
+
+    def part_of(self, leaf: int) -> Feature:
+        """The face, edge or vertex of the boundary that a leaf is of."""
+        return self.leaf_table.parts[leaf]
 
     @cached_property
     def _cavity_parts(self) -> frozenset[Feature]:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.minima import one_place
-from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.answer import Continuum
-from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import signed_distances
@@ -32,21 +31,30 @@ OPEN_TURN = 1.6
 
 def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     """Without those that were found twice."""
+    ordered = sorted(places, key=lambda each: each.distance)
     kept: list[Place] = []
-    for place in sorted(places, key=lambda each: each.distance):
-        if not any(is_same(place, other, pair.size) for other in kept):
+    again = np.zeros(len(ordered), dtype=bool)
+    spots = spots_of(ordered)
+    for k, place in enumerate(ordered):
+        if not again[k]:
             kept.append(place)
+            again |= same_as(spots, k, pair.size)
     return kept
 
 
-def is_same(place: Place, other: Place, size: float) -> bool:
-    """Is a pair another one again, or cut off its valley by the side of a leaf?"""
-    return bool(one_place(place.spot, other.spot, size))
+def spots_of(places: Sequence[Place]) -> Array:
+    """Both points and the distance of each (n, 7)."""
+    return np.array([place.spot for place in places]).reshape(-1, 7)
 
 
-def continuum_of(
-    pair: PlacedPair, places: Sequence[Place], found: Found, senses: tuple[int, int]
-) -> Continuum | None:
+def same_as(spots: Array, k: int, size: float) -> NDArray[np.bool_]:
+    """Which pairs are the k-th one again, or cut off its valley by the side of a leaf?"""
+    out = np.empty(len(spots))
+    one_place(spots, k, size, out)
+    return out > 0.0
+
+
+def continuum_of(pair: PlacedPair, places: Sequence[Place], found: Found) -> Continuum | None:
     """The continuum that the nearest place belongs to; None if it is a single one.
 
     It is one if Newton's method finds other pairs at the same distance from other starts in the
@@ -57,10 +65,12 @@ def continuum_of(
     told: Continuum | None = None
     every = [(place.point_a, place.point_b) for place in places]
     for place in _likeliest(pair, places)[:TRIED]:
-        others = _others(pair, place, most, senses)
+        others = _others(pair, place, most)
         every += others
-        if others and (told is None or told.kind != "surface"):
+        if others:
             told = _described(place, others, places)
+            if told.kind == "surface":
+                return told
     if told is not None and told.kind == "arc" and _is_filled(pair, every, found.tolerance):
         return Continuum("surface", _corners(every, _spots(every)))
     return told
@@ -96,16 +106,20 @@ def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     """Places of pairs of leaves with the most parameters first; among them those of planes, then
     those within both leaves, as two may have but a corner in common, and then those of features
     that have the most places in common. Each pair of features comes before any comes again."""
-    leaves = [
-        (pair.a.leaves[int(place.row[1])], pair.b.leaves[int(place.row[2])]) for place in places
-    ]
-    features = [(one.feature, other.feature) for one, other in leaves]
+    rows = np.array([place.row[:7] for place in places]).reshape(-1, 7)
+    sides, ranks = [], np.zeros((4, len(rows)), dtype=int)
+    for side, table in enumerate((pair.a.leaf_table, pair.b.leaf_table)):
+        leaves = rows[:, 1 + side].astype(int)
+        low, high = table.ends[leaves, ::2], table.ends[leaves, 1::2]
+        at = rows[:, 3 + 2 * side : 5 + 2 * side]
+        sides.append(table.feature[leaves].tolist())
+        ranks[0] -= table.dim[leaves]
+        ranks[1] -= table.plane[leaves]
+        ranks[2] += (((at <= low) | (at >= high)) & (low < high)).sum(axis=1)
+    features = list(zip(*sides, strict=True))
     often = Counter(features)
-    ranks = [
-        (-one.dim - other.dim, -_planes(one, other), _held(place, one, other), -often[both])
-        for place, (one, other), both in zip(places, leaves, features, strict=True)
-    ]
-    order = sorted(range(len(places)), key=lambda k: ranks[k])
+    ranks[3] = [-often[both] for both in features]
+    order = np.lexsort(ranks[::-1]).tolist()
     seen: Counter[tuple[int, int]] = Counter()
     turn = {}
     for k in order:
@@ -114,48 +128,26 @@ def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     return [places[k] for k in sorted(order, key=lambda k: turn[k])]
 
 
-def _held(place: Place, one: Leaf, other: Leaf) -> int:
-    """How many of a place's parameters are at the ends of their leaves."""
-    ends = np.array([*one.reals[:4], *other.reals[:4]]).reshape(4, 2)
-    at = place.row[3:7]
-    return int(((at <= ends[:, 0]) | (at >= ends[:, 1]))[ends[:, 0] < ends[:, 1]].sum())
-
-
-def _planes(*leaves: Leaf) -> int:
-    """How many are of planes: what is parallel to one is near it all over, and the strips and
-    corners beside a plane are as near at their ends only."""
-    return sum(leaf.dim == 2 and leaf.kind == TORUS_THROUGH for leaf in leaves)
-
-
-def _others(
-    pair: PlacedPair, place: Place, most: float, senses: tuple[int, int]
-) -> list[tuple[Array, Array]]:
+def _others(pair: PlacedPair, place: Place, most: float) -> list[tuple[Array, Array]]:
     """Pairs (x, y) in the leaves of a place at the least distance, more than a little away."""
-    found = []
-    for start in starts(pair, place.row):
-        row = pair.found_from(place.row, start)
-        if row is None or row[0] > most:
-            continue
-        other = pair.place(row, senses)
-        away = max(
-            float(np.linalg.norm(other.point_a - place.point_a)),
-            float(np.linalg.norm(other.point_b - place.point_b)),
-        )
-        if away > CONTINUUM_LENGTH * pair.size:
-            found.append((other.point_a, other.point_b))
-    return found
+    x, y = pair.points_of(pair.found_from(place.row, starts(pair, place.row), most))
+    off_a, off_b = (
+        np.linalg.norm(x - place.point_a, axis=1),
+        np.linalg.norm(y - place.point_b, axis=1),
+    )
+    far = np.maximum(off_a, off_b) > CONTINUUM_LENGTH * pair.size
+    return list(zip(x[far], y[far], strict=True))
 
 
-def starts(pair: PlacedPair, row: Array) -> Iterator[Array]:
-    """Parameters at the corners of one leaf and the middles of its sides, those of the other held,
-    and the other way round."""
-    q = row[3:7]
+def starts(pair: PlacedPair, row: Array) -> Array:
+    """Parameters (18, 4) at the corners of one leaf and the middles of its sides, those of the
+    other held, and the other way round."""
+    found = np.tile(row[3:7], (18, 1))
     for side, solid in enumerate((pair.a, pair.b)):
         u0, u1, v0, v1 = solid.leaves[int(row[1 + side])].reals[:4]
-        for u, v in product((u0, 0.5 * (u0 + u1), u1), (v0, 0.5 * (v0 + v1), v1)):
-            start = q.copy()
-            start[2 * side : 2 * side + 2] = u, v
-            yield start
+        at = product((u0, 0.5 * (u0 + u1), u1), (v0, 0.5 * (v0 + v1), v1))
+        found[9 * side : 9 * side + 9, 2 * side : 2 * side + 2] = list(at)
+    return found
 
 
 def _described(

@@ -19,7 +19,9 @@ from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
 from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
+from standoff.solids.spatial.sides import vertex_normals_of
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import NEAREST_ALONE
 from standoff.solids.tracked.answers import SolidAnswers
 from standoff.solids.tracked.asks import Asks
@@ -115,6 +117,8 @@ class SolidTracker(KeepsReadOnly):
             No pose.
         """
         pair = PlacedPair(self.a, self.b, Pose.of(pose_a), Pose.of(pose_b))
+        for body in (self.a, self.b):  # no frame waits for what a contact asks of its vertices
+            fans_of(body), vertex_normals_of(body)
         answer, front = self._asks.in_time().cold(pair)
         return SolidState(answer, (self.a, self.b), front, 0 if front is None else front.born)
 
