@@ -19,7 +19,7 @@ from standoff.kernels.solids.round_axis import (
     arc_offset,
     round_at_most,
 )
-from standoff.kernels.solids.spatial_heights import height_greatest, wave_max
+from standoff.kernels.solids.spatial_heights import height_greatest, wave_rise
 from standoff.kernels.solids.spatial_likeness import (
     OVER_SINE,
     differences,
@@ -206,7 +206,7 @@ def greatest_along(phi, sign, most, side, piece, ta, tb):
             third = swing(side, arc, phi.n)
         bound = min(bound, value + line_max(g[0], H[0] + third * h / 3.0 + spread, -h, h))
         if bound > most and arc >= 0 and is_plane(phi):  # a wave in the angle from the middle
-            bound = min(bound, value + H[0] + wave_max(-H[0], g[0], -h, h))
+            bound = min(bound, value + wave_rise(g[0], H[0], h))
         elif bound > most and arc >= 0 and phi.kind in (AXIS_OF, CONE_OF, CIRCLE_OF):
             bound = most if arc_at_most(phi, sign, most, jet, -h, h) else bound
     return bound, value

@@ -28,6 +28,18 @@ def wave_max(a, b, first, last):
 
 
 @kernel
+def wave_rise(b, c, wide):
+    """The greatest b sin t + c (1 - cos t) for -wide <= t <= wide: as exact as it is small, though
+    c is a radius that may be far longer than what is left of an arc."""
+    half = sin(0.5 * min(wide, pi))
+    most = abs(b) * sin(wide) + 2.0 * c * half * half if wide < pi else 2.0 * c
+    if abs(atan2(b, -c)) > wide:
+        return most
+    root = sqrt(b * b + c * c)
+    return max(most, b * b / (root - c) if c < 0.0 else c + root)
+
+
+@kernel
 def amplitudes(side, o, n):
     """(n . shift, n . columns) of the affine map at reals[o:]; n in the solid's frame."""
     m = side.reals
