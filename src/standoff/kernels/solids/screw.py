@@ -26,9 +26,9 @@ BESIDE_HULL = 0.98
 
 @kernel
 def own_screw(side, leaf):
-    """(known, rise per radian, point, axis) of the screw motion that moves a face along itself."""
+    """(known, rise per radian, point, axis) of the screw motion that moves a leaf along itself."""
     r = leaf_ints(side, leaf)
-    if side.own[r + S.DIM] != 2 or side.own[r + S.NATURAL] != S.SCREWED:
+    if side.own[r + S.NATURAL] != S.SCREWED:
         return False, 0.0, ZERO, ZERO
     o = leaf_reals(side, leaf) + S.NATURAL_REALS
     point, axis = moved_line(side, o + 3)
@@ -59,9 +59,12 @@ def local_thread(part, line, rise, slope):
     r1, z1, t1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     r2, z2, t2 = d[0] - c[0], d[1] - c[1], d[2] - c[2]
     det = t1 * r2 - t2 * r1
-    if det == 0.0:
+    if det != 0.0:
+        own_rise, own_slope = (z1 * r2 - z2 * r1) / det, (t1 * z2 - t2 * z1) / det
+    elif t1 != 0.0:  # of an edge
+        own_rise, own_slope = (z1 - slope * r1) / t1, slope
+    else:
         return rise, slope
-    own_rise, own_slope = (z1 * r2 - z2 * r1) / det, (t1 * z2 - t2 * z1) / det
     near = abs(own_rise - rise) <= ONE_THREAD * abs(rise)
     if near and abs(own_slope - slope) <= ONE_THREAD * (1.0 + slope * slope):
         return own_rise, own_slope
@@ -70,12 +73,14 @@ def local_thread(part, line, rise, slope):
 
 @kernel
 def common_screw(a, b):
-    """(known, rise, point, axis, part) of the screw of one of two parts."""
+    """(known, rise, point, axis, part) of the screw of one of two parts, a face rather than an
+    edge."""
     known, rise, point, axis = own_screw(a.side, a.leaf)
-    if known:
+    other = own_screw(b.side, b.leaf)
+    edge = a.side.own[leaf_ints(a.side, a.leaf) + S.DIM] < 2
+    if known and not (edge and other[0]):
         return known, rise, point, axis, a
-    known, rise, point, axis = own_screw(b.side, b.leaf)
-    return known, rise, point, axis, b
+    return other[0], other[1], other[2], other[3], b
 
 
 @kernel
