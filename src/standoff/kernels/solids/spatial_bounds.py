@@ -40,6 +40,7 @@ from standoff.kernels.solids.spatial_pieces import (
     part_in_place,
     put_both_halves,
     put_whole,
+    reach_of,
     trim_state,
     whole_box,
 )
@@ -371,6 +372,8 @@ def settled(phi, sign, most, part, q, counts):
     bound, value, g, change = greatest(phi, sign, side, leaf, b, cu, cv)
     if bound <= most:
         return 1
+    if value - reach_of(side, leaf, 0.5 * (b.u1 - b.u0), 0.5 * (b.v1 - b.v0)) > most:
+        return -1  # everywhere
     state = trim_state(side, leaf, b)
     if state == OUTSIDE_TRIM:
         return 1

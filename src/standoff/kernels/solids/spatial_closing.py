@@ -156,7 +156,10 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
     first, last = ways
-    closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), last, counts)
+    closed, phi = False, NO_POTENTIAL
+    if last == SCREWED:
+        screw = common_screw(a, b, (wa, wb), (ja, jb))
+        closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), screw, counts)
     if closed:
         return SCREWED, phi
     phi = plane_between(x, y, n)
@@ -218,11 +221,8 @@ def by_straight(goal, a, b, at, common, place, counts):
 
 
 @kernel
-def by_screw(goal, a, b, n, place, last, counts):
-    """(whether a potential along a common screw proves it, potential), if it is the last way."""
-    if last != SCREWED:
-        return False, NO_POTENTIAL
-    screw = common_screw(a, b)
+def by_screw(goal, a, b, n, place, screw, counts):
+    """(whether a potential along a common screw proves it, potential)."""
     if not screw[0]:
         return False, NO_POTENTIAL
     known, phi = screw_between(a, b, place[2], place[3], n, screw)

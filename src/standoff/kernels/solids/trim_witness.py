@@ -24,7 +24,7 @@ from standoff.kernels.solids.spatial_progress import middle
 # on each.
 ON_A_PIECE, ON_A_LEAF = 4, 16
 # Moves along a curve from the best of these.
-SLIDES = 3
+SLIDES = 6
 # Times that an interval of a trimming curve is narrowed to what is in a part.
 NARROWINGS = 6
 
@@ -126,10 +126,16 @@ def nearest_on_trim(a, b, counts):
                 best, least = q, distance
         if here > least:
             continue
-        for _ in range(SLIDES):  # so that the way to B is across the curve
-            t = min(max(towards(a, b, piece, at, best), ta), tb)
-            _, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
-            if distance >= least:
+        # so that the way to B is across the curve, or as far as the part goes
+        step = towards(a, b, piece, at, best) - at
+        for _ in range(SLIDES):
+            t = min(max(at + step, ta), tb)
+            known, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
+            if not known:
+                step = 0.5 * (t - at)
+            elif distance < least:
+                best, least, at = q, distance, t
+                step = towards(a, b, piece, at, best) - at
+            else:
                 break
-            best, least, at = q, distance, t
     return best, least
