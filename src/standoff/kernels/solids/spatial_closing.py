@@ -157,7 +157,7 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     place = (here, q, x, y, limit)
     first, last = ways
     closed, phi = False, NO_POTENTIAL
-    if last == SCREWED:
+    if last == SCREWED and limit < MOST_BOXES:  # of more boxes it would have as many
         screw = common_screw(a, b, (wa, wb), (ja, jb))
         closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), screw, counts)
     if closed:
@@ -241,9 +241,13 @@ def by_one(phi, goal, a, b, place, counts):
     pa, pb = (q[0], q[1]), (q[2], q[3])
     if not here:
         pa, pb = middle(a.box), middle(b.box)
+    # what has fewer parameters fails after fewer boxes
+    b_first = dim_of(b.side, b.leaf) < dim_of(a.side, a.leaf)
+    if b_first and not proven(phi, -1.0, spare - high, b, pb, limit, counts):
+        return False
     if not proven(phi, 1.0, low + spare, a, pa, limit, counts):
         return False
-    return proven(phi, -1.0, spare - high, b, pb, limit, counts)
+    return b_first or proven(phi, -1.0, spare - high, b, pb, limit, counts)
 
 
 @kernel
