@@ -338,13 +338,10 @@ def nearest_of(a, b, counts):
 
 
 @kernel
-def closed_by_any(a, b, best, minima, hard, counts):
-    """Is a pair of parts closed? Nearer points that are found are kept. Of a `hard` pair of leaves
+def closed_by_any(a, b, found, best, minima, hard, counts):
+    """Is a pair of parts closed, with the nearest points found in it? Of a `hard` pair of leaves
     more boxes of a potential are looked at."""
-    q, distance = nearest_of(a, b, counts)
-    keep_found(a, b, q, distance, best, minima)
-    if best[MET] > 0.0:
-        return True
+    q, distance = found
     goal, row = best[LEAST] - best[TOLERANCE] + best[ROUNDING], -1
     if best[ABOVE] > best[LEAST]:
         goal, row = local_goal(a, b, q, distance, best, minima)
@@ -451,9 +448,10 @@ def left_out(a, b, goal, most, best, counts):
 
 @kernel
 def close_leaves(a, b, pair, best, minima, work, counts):
-    """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
-    lowers best[OPEN]."""
-    leaf_a, leaf_b, low = pair
+    """Close a pair (leaf of A, leaf of B, bound, parameters and distance of the nearest points found
+    in it), cutting it where it has to be; what stays open lowers best[OPEN], and nearer points that
+    are found are kept."""
+    leaf_a, leaf_b, low, q, distance = pair
     put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
     count, cuts = 1, 0
     # two edges have few boxes
@@ -481,7 +479,12 @@ def close_leaves(a, b, pair, best, minima, work, counts):
         out = cuts == 0 and not flush
         if out and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
             continue
-        if closed_by_any(pa, pb, best, minima, cuts >= most_easy, counts):
+        if cuts > 0:
+            q, distance = nearest_of(pa, pb, counts)
+            keep_found(pa, pb, q, distance, best, minima)
+            if best[MET] > 0.0:
+                break
+        if closed_by_any(pa, pb, (q, distance), best, minima, cuts >= most_easy, counts):
             continue
         if flush and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
             continue
