@@ -18,7 +18,7 @@ from standoff.kernels.solids.coaxial import (
 )
 from standoff.kernels.solids.crossing_planes import planes_apart
 from standoff.kernels.solids.over_plane import clear_of_plane
-from standoff.kernels.solids.screw import common_screw, screw_between
+from standoff.kernels.solids.screw import common_screw, own_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
     across,
@@ -447,6 +447,14 @@ def left_out(a, b, goal, most, best, counts):
 
 
 @kernel
+def along_thread(a, b):
+    """Are both parts of faces of threads? Many such are as near to each other; to cut them takes
+    less than more boxes of each."""
+    both = dim_of(a.side, a.leaf) + dim_of(b.side, b.leaf) == 4
+    return both and own_screw(a.side, a.leaf)[0] and own_screw(b.side, b.leaf)[0]
+
+
+@kernel
 def close_leaves(a, b, pair, best, minima, work, counts):
     """Close a pair (leaf of A, leaf of B, bound, parameters and distance of the nearest points found
     in it), cutting it where it has to be; what stays open lowers best[OPEN], and nearer points that
@@ -484,7 +492,8 @@ def close_leaves(a, b, pair, best, minima, work, counts):
             keep_found(pa, pb, q, distance, best, minima)
             if best[MET] > 0.0:
                 break
-        if closed_by_any(pa, pb, (q, distance), best, minima, cuts >= most_easy, counts):
+        hard = cuts >= most_easy and not along_thread(pa, pb)
+        if closed_by_any(pa, pb, (q, distance), best, minima, hard, counts):
             continue
         if flush and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
             continue

@@ -6,6 +6,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
 from standoff.kernels.solids.spatial_closing import (
     close_leaves,
+    closed_by_any,
     left_out,
     nearest_of,
     no_pair,
@@ -122,15 +123,23 @@ def closed_pair(a, b, pair, best, minima, work, counts):
 @kernel
 def close_loosely(a, b, first, left, best, minima, room, counts):
     """Of a hard search, prove of all pairs of leaves from `first` on that they are half of the
-    least distance apart: an end of the evaluations then leaves that much of a bound."""
+    least distance apart: an end of the evaluations then leaves that much of a bound. Of those that
+    are closed at once nothing is left to prove."""
     pairs, _, work = room
     if best[ABOVE] > 0.0:
         return
     tolerance, open_, n_open, listed = best[TOLERANCE], best[OPEN], best[N_OPEN], best[MOST_OPEN]
     best[MOST_OPEN] = 0.0
     for k in range(first, left):
-        best[TOLERANCE] = max(0.5 * best[LEAST], tolerance)
+        best[TOLERANCE] = tolerance
         pair = pair_left(pairs, k)
+        if pair[2] < goal_of(best) <= pair[4] and best[MET] == 0.0:
+            pa = S.Part(a, pair[0], leaf_box(a, pair[0]))
+            pb = S.Part(b, pair[1], leaf_box(b, pair[1]))
+            if closed_by_any(pa, pb, (pair[3], pair[4]), best, minima, False, counts):
+                pairs[LEFT_REALS * k + 2] = goal_of(best)
+                continue
+        best[TOLERANCE] = max(0.5 * best[LEAST], tolerance)
         if pair[2] < goal_of(best) and best[MET] == 0.0:
             low = closed_pair(a, b, pair, best, minima, work, counts)
             pairs[LEFT_REALS * k + 2] = max(pair[2], low)
