@@ -218,9 +218,7 @@ def lies_in(at, shift, box):
     u, v = at[0] + shift, at[1]
     spare_u = PARAMETER_SPARE * (abs(at[0]) + abs(shift))
     spare_v = PARAMETER_SPARE * abs(v)
-    return (
-        box.u0 - spare_u <= u <= box.u1 + spare_u and box.v0 - spare_v <= v <= box.v1 + spare_v
-    )
+    return box.u0 - spare_u <= u <= box.u1 + spare_u and box.v0 - spare_v <= v <= box.v1 + spare_v
 
 
 @kernel

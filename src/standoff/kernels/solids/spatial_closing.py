@@ -84,7 +84,7 @@ EASY_CUTS = 16
 # Boxes that a whole leaf is looked at with over a plane.
 MOST_CLOSING = 100
 # The same, of a potential that does for whole pieces of a thread, and of a flat end in its bore.
-SCREW_BOXES, AXIS_BOXES = 150, 150
+SCREW_BOXES, AXIS_BOXES = 800, 150
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
 SCREWED = 7
 ALL_WAYS = (0, SCREWED)
