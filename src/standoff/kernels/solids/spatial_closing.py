@@ -156,10 +156,10 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
     first, last = ways
-    closed, phi = False, NO_POTENTIAL
-    if last == SCREWED and limit < MOST_BOXES:  # of more boxes it would have as many
-        screw = common_screw(a, b, (wa, wb), (ja, jb))
-        closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), screw, counts)
+    # of more boxes it would have as many
+    tried = last == SCREWED and limit < MOST_BOXES
+    screw = common_screw(a, b, (wa, wb), (ja, jb))
+    closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), (tried, screw), counts)
     if closed:
         return SCREWED, phi
     phi = plane_between(x, y, n)
@@ -222,10 +222,11 @@ def by_straight(goal, a, b, at, common, place, counts):
 
 @kernel
 def by_screw(goal, a, b, n, place, screw, counts):
-    """(whether a potential along a common screw proves it, potential)."""
-    if not screw[0]:
+    """(whether a potential along a common screw proves it, potential); screw: whether to try it,
+    and the screw."""
+    if not (screw[0] and screw[1][0]):
         return False, NO_POTENTIAL
-    known, phi = screw_between(a, b, place[2], place[3], n, screw)
+    known, phi = screw_between(a, b, place[2], place[3], n, screw[1])
     return known and by_one(phi, goal, a, b, place, counts), phi
 
 
@@ -456,9 +457,9 @@ def along_thread(a, b):
 
 @kernel
 def close_leaves(a, b, pair, best, minima, work, counts):
-    """Close a pair (leaf of A, leaf of B, bound, parameters and distance of the nearest points found
-    in it), cutting it where it has to be; what stays open lowers best[OPEN], and nearer points that
-    are found are kept."""
+    """Close a pair (leaf of A, leaf of B, bound, parameters and distance of the nearest points
+    found in it), cutting it where it has to be; what stays open lowers best[OPEN], and nearer
+    points that are found are kept."""
     leaf_a, leaf_b, low, q, distance = pair
     put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
     count, cuts = 1, 0
