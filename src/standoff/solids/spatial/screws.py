@@ -88,9 +88,9 @@ def _threads(charts: Iterable[FaceChart]) -> list[_Thread]:
         else:
             found.append(_Thread([chart.number], points, normals, screw))
     for number, points, normals in others:
-        thread = next((each for each in found if _is_along(each.screw, points, normals)), None)
-        if thread is not None:
-            thread.charts.append(number)
+        along = [each for each in found if _is_along(each.screw, points, normals)]
+        if along:
+            along[0].charts.append(number)
     return found
 
 

@@ -68,7 +68,7 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, 
             beside = round_faces.get(number, (-1, np.zeros(9)))
             proven = number not in sampled
             found += edge_leaves(boundary, number, parts, cones[number], beside, proven)
-    beside_edges = {boundary.n_faces + piece.edge: [] for piece in pieces}
+    beside_edges: dict[int, list[int]] = {boundary.n_faces + piece.edge: [] for piece in pieces}
     for piece in pieces:
         beside_edges[boundary.n_faces + piece.edge].append(piece.chart)
     put_screws(found, charts, beside_edges)
