@@ -15,7 +15,7 @@ from families.threads import FLANK, GAP, RISE, bar, beside, flanks
 from standoff.kernels.entries.solids import side_at
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.screw import common_screw, screw_between
-from standoff.kernels.solids.spatial_pieces import leaf_box
+from standoff.kernels.solids.spatial_pieces import leaf_box, leaf_jet
 from standoff.kernels.solids.torus_potential import SCREW_OF, THIRD, Potential, potential_jet
 from standoff.solids import distance
 from standoff.solids.spatial import tree
@@ -134,7 +134,7 @@ def test_where_there_are_many_screws_or_none_no_one_is_taken(rng) -> None:
 @cache
 def answers() -> tuple:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(tree, "put_screws", lambda leaves, charts: None)
+        patch.setattr(tree, "put_screws", lambda leaves, charts, beside: None)
         without = bar(FLANK, 0.0, 1.0, 5), bar(beside(), -0.2, 0.8, 5)
     return distance(*flanks(), STILL, STILL), distance(*without, STILL, STILL)
 
@@ -150,39 +150,41 @@ def test_flanks_side_by_side_are_closed_by_their_screw() -> None:
 
 
 @njit
-def between(solids, pose, leaves, x, y, n):
+def between(solids, pose, leaves, at, n):
     a, b = side_at(solids[0], pose, S.OUTSIDE), side_at(solids[1], pose, S.OUTSIDE)
     pa = S.Part(a, leaves[0], leaf_box(a, leaves[0]))
     pb = S.Part(b, leaves[1], leaf_box(b, leaves[1]))
-    return screw_between(pa, pb, x, y, n, common_screw(pa, pb))
+    jets = leaf_jet(a, leaves[0], at[0], at[1]), leaf_jet(b, leaves[1], at[2], at[3])
+    x, y = jets[0][0], jets[1][0]
+    return screw_between(pa, pb, x, y, n, common_screw(pa, pb, leaves, jets))
 
 
-def sampled(solid, leaf: int) -> np.ndarray:
+def sampled(solid, leaf: int) -> tuple[np.ndarray, np.ndarray]:
+    """Parameters of a leaf, and its points there."""
     u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
-    places = product(np.linspace(u0, u1, 5), np.linspace(v0, v1, 9))
-    return np.array([leaf_jet_of(solid.packed, leaf, u, v)[0] for u, v in places])
+    places = np.array(list(product(np.linspace(u0, u1, 5), np.linspace(v0, v1, 9))))
+    return places, np.array([leaf_jet_of(solid.packed, leaf, u, v)[0] for u, v in places])
 
 
 def test_between_two_parts_it_changes_by_no_more_than_the_way() -> None:
     a, b = flanks()
-    faces = [[k for k, leaf in enumerate(solid.leaves) if leaf.dim == 2] for solid in (a, b)]
+    leaves_of = [[k for k, leaf in enumerate(s.leaves) if leaf.kind == S.SCREWED] for s in (a, b)]
     made, steepest = 0, 0.0
-    for one, other in product(*faces):
-        xs, ys = sampled(a, one), sampled(b, other)
+    for one, other in product(*leaves_of):
+        (ps, xs), (qs, ys) = sampled(a, one), sampled(b, other)
         ways = np.linalg.norm(xs[:, None] - ys[None], axis=2)
         i, j = np.unravel_index(ways.argmin(), ways.shape)
         if ways[i, j] > 0.1:
             continue
         n = (ys[j] - xs[i]) / ways[i, j]
         leaves = np.array([one, other])
-        known, phi = between(
-            (a.packed, b.packed), IDENTITY, leaves, tuple(xs[i]), tuple(ys[j]), tuple(n)
-        )
+        at = (*ps[i].tolist(), *qs[j].tolist())
+        known, phi = between((a.packed, b.packed), IDENTITY, leaves, at, tuple(n))
         if not known:
             continue
         made += 1
         low, high = (
-            np.array([potential_jet(phi, tuple(p), 0.0)[0] for p in ps]) for ps in (xs, ys)
+            np.array([potential_jet(phi, tuple(p), 0.0)[0] for p in own]) for own in (xs, ys)
         )
         changes = np.abs(high[None] - low[:, None]) / ways
         assert changes.max() <= 1.0 + 1e-12
@@ -198,3 +200,16 @@ def test_a_bar_has_one_screw() -> None:
         }
         assert len(found) == 1
         assert abs(found.pop()[0]) == pytest.approx(RISE, rel=1e-2)
+
+
+def test_edges_of_a_thread_have_its_screw() -> None:
+    for solid in flanks():
+        records = [
+            tuple(leaf.reals[S.NATURAL_REALS : S.NATURAL_REALS + 9])
+            for leaf in solid.leaves
+            if leaf.kind == S.SCREWED and leaf.dim == 1
+        ]
+        edges = {leaf.feature for leaf in solid.leaves if leaf.kind == S.SCREWED and leaf.dim == 1}
+        # all four along the bar, and those of its ends, which are beside its faces too
+        assert len(edges) >= 4
+        assert len(set(records)) == 1

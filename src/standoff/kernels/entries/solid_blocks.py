@@ -17,7 +17,7 @@ from standoff.kernels.solids.front_branches import BRANCH_REALS, MERGED_REALS, M
 from standoff.kernels.solids.front_rows import KEY_REALS, N_ROWS, ROW_REALS, STORE_REALS
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS
 from standoff.kernels.solids.point_depth import MOST_TIES, UNTURNED, Known, Probe
-from standoff.kernels.solids.spatial_progress import BEST_REALS, MINIMUM_REALS
+from standoff.kernels.solids.spatial_progress import BEST_REALS, LEFT_REALS, MINIMUM_REALS
 from standoff.kernels.solids.stationary import Fans
 from standoff.kernels.values import Pose
 
@@ -87,7 +87,7 @@ W_BEST = W_MINIMA + MINIMUM_REALS * MOST_LOCAL
 W_TIES = W_BEST + BEST_REALS
 W_CLOSING = W_TIES + MINIMUM_REALS * MOST_TIES
 W_PAIRS = W_CLOSING + CLOSING
-W_KEYS = W_PAIRS + 3 * MOST_PAIRS
+W_KEYS = W_PAIRS + LEFT_REALS * MOST_PAIRS
 W_NODES = W_KEYS + MOST_NODES
 W_COUNTS = W_NODES + 2 * MOST_NODES
 N_SOLIDS_BLOCK = W_COUNTS + 16

@@ -14,6 +14,7 @@ from standoff.kernels.solids.point_depth import (
     seen_from,
     side_by,
 )
+from standoff.kernels.solids.spatial_progress import LEFT_REALS
 
 
 @entry(SOLID, READ, INT, REAL, REAL, work="solids")
@@ -45,7 +46,7 @@ def heap_and_space(room):
     work, nodes, keys = room
     most = len(keys)
     heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, most), most)
-    return heap, (pointer(work, CLOSING), (len(work) - CLOSING) // 3, pointer(work, 0))
+    return heap, (pointer(work, CLOSING), (len(work) - CLOSING) // LEFT_REALS, pointer(work, 0))
 
 
 # What a search fills, and what is told.

@@ -20,6 +20,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.local_side import on_one_side, tell_beside
 from standoff.kernels.solids.spatial_minimum import nearest
 from standoff.kernels.solids.spatial_pieces import along, leaf_box, leaf_jet, on_solid
+from standoff.kernels.solids.spatial_progress import LEFT_REALS
 from standoff.kernels.solids.spatial_search import search
 from standoff.kernels.solids.spatial_self import (
     FOUND_REALS,
@@ -60,7 +61,7 @@ def boundary_distance(solids, pose, senses, best, minima, room, counts):
     work, nodes, keys = room
     limit = len(keys)
     heap = (pointer(keys, 0), pointer(nodes, 0), pointer(nodes, limit), limit)
-    space = (pointer(work, CLOSING), (len(work) - CLOSING) // 3, pointer(work, 0))
+    space = (pointer(work, CLOSING), (len(work) - CLOSING) // LEFT_REALS, pointer(work, 0))
     search(a, b, pointer(best, 0), pointer(minima, 0), heap, space, pointer(counts, 0))
 
 

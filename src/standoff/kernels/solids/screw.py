@@ -1,8 +1,6 @@
 """The potential that is constant along a screw: on both flanks of a thread, so that one does for a
 whole piece of it."""
 
-from math import atan2
-
 from standoff.kernels.algebra.roots import sqrt
 from standoff.kernels.algebra.vectors import add, axpy, cross, dot, norm, scale, sub
 from standoff.kernels.compiler.decorators import kernel
@@ -11,12 +9,7 @@ from standoff.kernels.solids.coaxial import NO_POTENTIAL
 from standoff.kernels.solids.spatial_likeness import moved_line
 from standoff.kernels.solids.spatial_pieces import ZERO, along, leaf_ints, leaf_jet, leaf_reals
 from standoff.kernels.solids.spatial_progress import middle
-from standoff.kernels.solids.spatial_tolerances import (
-    NEAREST_AXIS,
-    OFF_SCREW,
-    ONE_THREAD,
-    STEEP_FLANK,
-)
+from standoff.kernels.solids.spatial_tolerances import NEAREST_AXIS, ONE_THREAD
 from standoff.kernels.solids.torus_potential import SCREW_OF, Potential
 
 # Of the hull's distance from the axis: the potential serves a little beyond it, for the parts of
@@ -26,9 +19,9 @@ BESIDE_HULL = 0.98
 
 @kernel
 def own_screw(side, leaf):
-    """(known, rise per radian, point, axis) of the screw motion that moves a face along itself."""
+    """(known, rise per radian, point, axis) of the screw motion that moves a leaf along itself."""
     r = leaf_ints(side, leaf)
-    if side.own[r + S.DIM] != 2 or side.own[r + S.NATURAL] != S.SCREWED:
+    if side.own[r + S.NATURAL] != S.SCREWED:
         return False, 0.0, ZERO, ZERO
     o = leaf_reals(side, leaf) + S.NATURAL_REALS
     point, axis = moved_line(side, o + 3)
@@ -36,46 +29,34 @@ def own_screw(side, leaf):
 
 
 @kernel
-def around_axis(x, line):
-    """(distance from the axis, height, angle from `out`) of a point."""
-    point, axis, out = line
-    y = sub(x, point)
-    z = dot(y, axis)
-    angle = atan2(dot(cross(axis, out), y), dot(out, y))
-    return norm(axpy(-z, axis, y)), z, angle
+def local_rise(side, leaf, jet, screw):
+    """The rise of the screw about the same axis that is tangential to a leaf at a point with this
+    jet, where it is near to its thread's: a spline is a thread only nearly."""
+    rise, point, axis = screw
+    y = sub(jet[0], point)
+    around = cross(axis, y)
+    own = rise
+    if side.own[leaf_ints(side, leaf) + S.DIM] == 2:
+        n = cross(jet[1], jet[2])
+        if dot(n, axis) != 0.0:
+            own = -dot(n, around) / dot(n, axis)
+    elif dot(jet[1], around) != 0.0:
+        own = dot(jet[1], axis) * dot(around, around) / dot(jet[1], around)
+    return own if abs(own - rise) <= ONE_THREAD * abs(rise) else rise
 
 
 @kernel
-def local_thread(part, line, rise, slope):
-    """(rise, slope of the height by the distance from the axis) of the screw that a part's middle
-    lines have at their ends, where it is near to the one given: a spline is a thread only nearly,
-    and a part of it has a screw that fits it better."""
-    box = part.box
-    u, v = middle(box)
-    a = around_axis(leaf_jet(part.side, part.leaf, box.u0, v)[0], line)
-    b = around_axis(leaf_jet(part.side, part.leaf, box.u1, v)[0], line)
-    c = around_axis(leaf_jet(part.side, part.leaf, u, box.v0)[0], line)
-    d = around_axis(leaf_jet(part.side, part.leaf, u, box.v1)[0], line)
-    r1, z1, t1 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    r2, z2, t2 = d[0] - c[0], d[1] - c[1], d[2] - c[2]
-    det = t1 * r2 - t2 * r1
-    if det == 0.0:
-        return rise, slope
-    own_rise, own_slope = (z1 * r2 - z2 * r1) / det, (t1 * z2 - t2 * z1) / det
-    near = abs(own_rise - rise) <= ONE_THREAD * abs(rise)
-    if near and abs(own_slope - slope) <= ONE_THREAD * (1.0 + slope * slope):
-        return own_rise, own_slope
-    return rise, slope
-
-
-@kernel
-def common_screw(a, b):
-    """(known, rise, point, axis, part) of the screw of one of two parts."""
-    known, rise, point, axis = own_screw(a.side, a.leaf)
-    if known:
-        return known, rise, point, axis, a
-    known, rise, point, axis = own_screw(b.side, b.leaf)
-    return known, rise, point, axis, b
+def common_screw(a, b, leaves, jets):
+    """(known, rise, point, axis) of the screw of one of two leaves at the points of their jets, a
+    face rather than an edge."""
+    known, rise, point, axis = own_screw(a.side, leaves[0])
+    other, b_rise, b_point, b_axis = own_screw(b.side, leaves[1])
+    edge = a.side.own[leaf_ints(a.side, leaves[0]) + S.DIM] < 2
+    if known and not (edge and other):
+        return known, local_rise(a.side, leaves[0], jets[0], (rise, point, axis)), point, axis
+    if other:
+        rise = local_rise(b.side, leaves[1], jets[1], (b_rise, b_point, b_axis))
+    return other, rise, b_point, b_axis
 
 
 @kernel
@@ -90,25 +71,22 @@ def least_along(part, e, point):
 
 @kernel
 def screw_between(a, b, x, y, n, screw):
-    """(known, potential) half way from x to y with the slope n there, constant along a screw
-    (known, rise, point, axis, part); it serves for the parts a and b only."""
-    _, rise, point, axis, own = screw
+    """(known, potential) half way from x to y with the slope n there, less what n has along the
+    screw line, constant along a screw (known, rise, point, axis); it serves for the parts a and b
+    only."""
+    _, rise, point, axis = screw
     between = sub(scale(0.5, add(x, y)), point)
     radial = axpy(-dot(between, axis), axis, between)
     rho = norm(radial)
     if rho <= 0.0:
         return False, NO_POTENTIAL
     out = scale(1.0 / rho, radial)
-    nz, nr, around = dot(n, axis), dot(n, out), dot(n, cross(axis, out))
-    if abs(around + rise / rho * nz) > OFF_SCREW:
-        return False, NO_POTENTIAL
+    nr, pitch = dot(n, out), rise / rho
+    nz = (dot(n, axis) - pitch * dot(n, cross(axis, out))) / (1.0 + pitch * pitch)
     # the parts' convex hull is on one side of the axis
     least = BESIDE_HULL * min(least_along(a, out, point), least_along(b, out, point))
     if least <= NEAREST_AXIS * rho:
         return False, NO_POTENTIAL
-    if abs(nz) >= STEEP_FLANK * abs(nr):
-        rise, slope = local_thread(own, (point, axis, out), rise, -nr / nz)
-        nr = -slope * nz
     steepest = sqrt(nz * nz * (1.0 + rise * rise / (least * least)) + nr * nr)
     if steepest <= 0.0:
         return False, NO_POTENTIAL

@@ -40,9 +40,11 @@ from standoff.kernels.solids.spatial_pieces import (
     part_in_place,
     put_both_halves,
     put_whole,
+    reach_of,
     trim_state,
     whole_box,
 )
+from standoff.kernels.solids.spatial_tolerances import PARAMETER_SPARE
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
     CENTRE_OF,
@@ -213,6 +215,15 @@ def greatest_along(phi, sign, most, side, piece, ta, tb):
 
 
 @kernel
+def lies_in(at, shift, box):
+    """Is a point of a trimming curve in a box of the chart's parameters, up to rounding?"""
+    u, v = at[0] + shift, at[1]
+    spare_u = PARAMETER_SPARE * (abs(at[0]) + abs(shift))
+    spare_v = PARAMETER_SPARE * abs(v)
+    return box.u0 - spare_u <= u <= box.u1 + spare_u and box.v0 - spare_v <= v <= box.v1 + spare_v
+
+
+@kernel
 def along_trim(phi, sign, most, part, counts):
     """Whether sign phi is at most `most` on all trimming curves in a part's box: 1 proven, -1 a
     point of one has more, 0 not known."""
@@ -244,9 +255,14 @@ def along_trim(phi, sign, most, part, counts):
                 return 0
             put_both_halves(side, piece, stack, count, (ends, p, q))
             if value > most:
-                pu, pv = part_in_place(stack, count)[2]
-                pu += m[own[S.R_PIECES] + S.PIECE_REALS * piece + S.P_SHIFT]
-                if box.u0 <= pu <= box.u1 and box.v0 <= pv <= box.v1:
+                o = own[S.R_PIECES] + S.PIECE_REALS * piece
+                shift = m[o + S.P_SHIFT]
+                if lies_in(part_in_place(stack, count)[2], shift, box):
+                    return -1
+                # a curve may come into the box at its end alone
+                if value - 0.5 * m[o + S.P_FIRST] * (tb - ta) > most and (
+                    lies_in(p, shift, box) or lies_in(q, shift, box)
+                ):
                     return -1
             count += 2
     return 1
@@ -356,6 +372,8 @@ def settled(phi, sign, most, part, q, counts):
     bound, value, g, change = greatest(phi, sign, side, leaf, b, cu, cv)
     if bound <= most:
         return 1
+    if value - reach_of(side, leaf, 0.5 * (b.u1 - b.u0), 0.5 * (b.v1 - b.v0)) > most:
+        return -1  # everywhere
     state = trim_state(side, leaf, b)
     if state == OUTSIDE_TRIM:
         return 1

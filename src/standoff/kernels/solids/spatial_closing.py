@@ -18,7 +18,7 @@ from standoff.kernels.solids.coaxial import (
 )
 from standoff.kernels.solids.crossing_planes import planes_apart
 from standoff.kernels.solids.over_plane import clear_of_plane
-from standoff.kernels.solids.screw import common_screw, screw_between
+from standoff.kernels.solids.screw import common_screw, own_screw, screw_between
 from standoff.kernels.solids.spatial_bounds import proven
 from standoff.kernels.solids.spatial_minimum import (
     across,
@@ -85,7 +85,7 @@ EASY_CUTS = 16
 # Boxes that a whole leaf is looked at with over a plane.
 MOST_CLOSING = 100
 # The same, of a potential that does for whole pieces of a thread, and of a flat end in its bore.
-SCREW_BOXES, AXIS_BOXES = 150, 150
+SCREW_BOXES, AXIS_BOXES = 800, 150
 # Potentials through a pair of points, from the first to the last; and the ways of `closed_to`.
 SCREWED = 7
 ALL_WAYS = (0, SCREWED)
@@ -157,7 +157,10 @@ def by_witness(goal, a, b, at, ways, limit, best, counts):
     here = wa == a.leaf and wb == b.leaf
     place = (here, q, x, y, limit)
     first, last = ways
-    closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), last, counts)
+    # of more boxes it would have as many
+    tried = last == SCREWED and limit < MOST_BOXES
+    screw = common_screw(a, b, (wa, wb), (ja, jb))
+    closed, phi = by_screw(goal, a, b, n, (here, q, x, y, SCREW_BOXES), (tried, screw), counts)
     if closed:
         return SCREWED, phi
     phi = plane_between(x, y, n)
@@ -219,14 +222,12 @@ def by_straight(goal, a, b, at, common, place, counts):
 
 
 @kernel
-def by_screw(goal, a, b, n, place, last, counts):
-    """(whether a potential along a common screw proves it, potential), if it is the last way."""
-    if last != SCREWED:
+def by_screw(goal, a, b, n, place, screw, counts):
+    """(whether a potential along a common screw proves it, potential); screw: whether to try it,
+    and the screw."""
+    if not (screw[0] and screw[1][0]):
         return False, NO_POTENTIAL
-    screw = common_screw(a, b)
-    if not screw[0]:
-        return False, NO_POTENTIAL
-    known, phi = screw_between(a, b, place[2], place[3], n, screw)
+    known, phi = screw_between(a, b, place[2], place[3], n, screw[1])
     return known and by_one(phi, goal, a, b, place, counts), phi
 
 
@@ -242,9 +243,13 @@ def by_one(phi, goal, a, b, place, counts):
     pa, pb = (q[0], q[1]), (q[2], q[3])
     if not here:
         pa, pb = middle(a.box), middle(b.box)
+    # what has fewer parameters fails after fewer boxes
+    b_first = dim_of(b.side, b.leaf) < dim_of(a.side, a.leaf)
+    if b_first and not proven(phi, -1.0, spare - high, b, pb, limit, counts):
+        return False
     if not proven(phi, 1.0, low + spare, a, pa, limit, counts):
         return False
-    return proven(phi, -1.0, spare - high, b, pb, limit, counts)
+    return b_first or proven(phi, -1.0, spare - high, b, pb, limit, counts)
 
 
 @kernel
@@ -335,13 +340,10 @@ def nearest_of(a, b, counts):
 
 
 @kernel
-def closed_by_any(a, b, best, minima, hard, counts):
-    """Is a pair of parts closed? Nearer points that are found are kept. Of a `hard` pair of leaves
+def closed_by_any(a, b, found, best, minima, hard, counts):
+    """Is a pair of parts closed, with the nearest points found in it? Of a `hard` pair of leaves
     more boxes of a potential are looked at."""
-    q, distance = nearest_of(a, b, counts)
-    keep_found(a, b, q, distance, best, minima)
-    if best[MET] > 0.0:
-        return True
+    q, distance = found
     goal, row = best[LEAST] - best[TOLERANCE] + best[ROUNDING], -1
     if best[ABOVE] > best[LEAST]:
         goal, row = local_goal(a, b, q, distance, best, minima)
@@ -448,10 +450,19 @@ def left_out(a, b, goal, most, best, counts):
 
 
 @kernel
+def along_thread(a, b):
+    """Are both parts of faces of threads? Many such are as near to each other; to cut them takes
+    less than more boxes of each."""
+    both = dim_of(a.side, a.leaf) + dim_of(b.side, b.leaf) == 4
+    return both and own_screw(a.side, a.leaf)[0] and own_screw(b.side, b.leaf)[0]
+
+
+@kernel
 def close_leaves(a, b, pair, best, minima, work, counts):
-    """Close a pair (leaf of A, leaf of B, bound), cutting it where it has to be; what stays open
-    lowers best[OPEN]."""
-    leaf_a, leaf_b, low = pair
+    """Close a pair (leaf of A, leaf of B, bound, parameters and distance of the nearest points
+    found in it), cutting it where it has to be; what stays open lowers best[OPEN], and nearer
+    points that are found are kept."""
+    leaf_a, leaf_b, low, q, distance = pair
     put_pair(work, 0, leaf_box(a, leaf_a), leaf_box(b, leaf_b), low)
     count, cuts = 1, 0
     # two edges have few boxes
@@ -479,7 +490,13 @@ def close_leaves(a, b, pair, best, minima, work, counts):
         out = cuts == 0 and not flush
         if out and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
             continue
-        if closed_by_any(pa, pb, best, minima, cuts >= most_easy, counts):
+        if cuts > 0:
+            q, distance = nearest_of(pa, pb, counts)
+            keep_found(pa, pb, q, distance, best, minima)
+            if best[MET] > 0.0:
+                break
+        hard = cuts >= most_easy and not along_thread(pa, pb)
+        if closed_by_any(pa, pb, (q, distance), best, minima, hard, counts):
             continue
         if flush and left_out(pa, pb, goal_of(best), MOST_CLOSING, best, counts):
             continue

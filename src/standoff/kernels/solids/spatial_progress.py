@@ -26,6 +26,9 @@ OPEN_REALS = 11
 # and the normal from A to B, 0 where the points are one.
 MINIMUM_REALS = 17
 BOUND, POINTS, NORMAL = 7, 8, 14
+# What a pair of leaves that is left holds: both, its bound, the distance of its nearest points that
+# were found and their parameters.
+LEFT_REALS = 8
 # What is counted: boxes that potentials are bounded over, steps of Newton's method, pairs of nodes,
 # pairs of leaves, bisections.
 BOXES, STEPS, NODE_PAIRS, LEAF_PAIRS, BISECTIONS = 0, 1, 2, 3, 4

@@ -6,6 +6,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_boxes import admits, gap_of, node_reach, push, take
 from standoff.kernels.solids.spatial_closing import (
     close_leaves,
+    closed_by_any,
     left_out,
     nearest_of,
     no_pair,
@@ -16,6 +17,7 @@ from standoff.kernels.solids.spatial_progress import (
     BUDGET,
     LEAF_PAIRS,
     LEAST,
+    LEFT_REALS,
     MET,
     MOST_OPEN,
     N_MINIMA,
@@ -89,15 +91,24 @@ def search(a, b, best, minima, heap, room, counts):
             count = offer(a, i, b, b.own[rb + 1], best, heap, count, counts)
     loose = False
     for k in range(left):
-        leaf_a, leaf_b = int(pairs[3 * k]), int(pairs[3 * k + 1])
+        pair = pair_left(pairs, k)
         if not loose and evaluations(counts) > LOOSE_FROM * best[BUDGET]:
             loose = True
             close_loosely(a, b, k, left, best, minima, room, counts)
-        low = pairs[3 * k + 2]
+        low = pairs[LEFT_REALS * k + 2]
         if low < goal_of(best) and best[MET] == 0.0:
-            low = closed_pair(a, b, (leaf_a, leaf_b, low), best, minima, work, counts)
+            pair = (pair[0], pair[1], low, pair[3], pair[4])
+            low = closed_pair(a, b, pair, best, minima, work, counts)
         if best[ABOVE] > 0.0:
-            bound_minima(best, minima, leaf_a, leaf_b, low)
+            bound_minima(best, minima, pair[0], pair[1], low)
+
+
+@kernel
+def pair_left(pairs, k):
+    """(leaves, bound, parameters and distance of the nearest points found) of the k-th pair."""
+    o = LEFT_REALS * k
+    q = (pairs[o + 4], pairs[o + 5], pairs[o + 6], pairs[o + 7])
+    return int(pairs[o]), int(pairs[o + 1]), pairs[o + 2], q, pairs[o + 3]
 
 
 @kernel
@@ -112,18 +123,26 @@ def closed_pair(a, b, pair, best, minima, work, counts):
 @kernel
 def close_loosely(a, b, first, left, best, minima, room, counts):
     """Of a hard search, prove of all pairs of leaves from `first` on that they are half of the
-    least distance apart: an end of the evaluations then leaves that much of a bound."""
+    least distance apart: an end of the evaluations then leaves that much of a bound. Of those that
+    are closed at once nothing is left to prove."""
     pairs, _, work = room
     if best[ABOVE] > 0.0:
         return
     tolerance, open_, n_open, listed = best[TOLERANCE], best[OPEN], best[N_OPEN], best[MOST_OPEN]
     best[MOST_OPEN] = 0.0
     for k in range(first, left):
+        best[TOLERANCE] = tolerance
+        pair = pair_left(pairs, k)
+        if pair[2] < goal_of(best) <= pair[4] and best[MET] == 0.0:
+            pa = S.Part(a, pair[0], leaf_box(a, pair[0]))
+            pb = S.Part(b, pair[1], leaf_box(b, pair[1]))
+            if closed_by_any(pa, pb, (pair[3], pair[4]), best, minima, False, counts):
+                pairs[LEFT_REALS * k + 2] = goal_of(best)
+                continue
         best[TOLERANCE] = max(0.5 * best[LEAST], tolerance)
-        if pairs[3 * k + 2] < goal_of(best) and best[MET] == 0.0:
-            pair = (int(pairs[3 * k]), int(pairs[3 * k + 1]), pairs[3 * k + 2])
+        if pair[2] < goal_of(best) and best[MET] == 0.0:
             low = closed_pair(a, b, pair, best, minima, work, counts)
-            pairs[3 * k + 2] = max(pair[2], low)
+            pairs[LEFT_REALS * k + 2] = max(pair[2], low)
     best[TOLERANCE], best[OPEN], best[N_OPEN], best[MOST_OPEN] = tolerance, open_, n_open, listed
 
 
@@ -144,5 +163,7 @@ def visit(a, b, key, best, minima, room, left, counts):
     if left >= most:
         leave_open(best, a.leaf, b.leaf, a.box, b.box, low)
         return left
-    pairs[3 * left], pairs[3 * left + 1], pairs[3 * left + 2] = a.leaf, b.leaf, low
+    o = LEFT_REALS * left
+    pairs[o], pairs[o + 1], pairs[o + 2], pairs[o + 3] = a.leaf, b.leaf, low, distance
+    pairs[o + 4], pairs[o + 5], pairs[o + 6], pairs[o + 7] = q
     return left + 1

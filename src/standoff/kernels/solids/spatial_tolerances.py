@@ -72,14 +72,9 @@ two poses."""
 NEAREST_AXIS: Final = 0.3
 """Of a point's distance from a screw's axis: parts that reach nearer to it are cut before the
 potential of the screw, which is steeper there, is tried."""
-OFF_SCREW: Final = 0.05
-"""Sine: a normal this far from being that of a surface along the screw is not tried with it."""
 ONE_THREAD: Final = 0.03
-"""Relative, of a rise, and of a slope's angle: a part of a thread whose ends have another screw
-than the whole is taken to have it if it is this near."""
-STEEP_FLANK: Final = 0.2
-"""Ratio: a normal with less along a screw's axis than this of what it has across it is a crest's or
-a root's, and no flank's."""
+"""Relative, of a rise: the screw that is tangential to a thread at a place is taken if it is this
+near to that of the whole."""
 SAME_BASIN: Final = 1e-2
 """Of the sizes: a pair this near to a nearer one lies in the same valley, cut at the side of
 a leaf."""

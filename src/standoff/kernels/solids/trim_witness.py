@@ -20,10 +20,11 @@ from standoff.kernels.solids.spatial_pieces import (
 )
 from standoff.kernels.solids.spatial_progress import middle
 
-# Places that are tried on each piece of a trimming curve, and on all of a leaf.
+# Places that are tried on each piece of a trimming curve, and on all of a leaf; of many pieces one
+# on each.
 ON_A_PIECE, ON_A_LEAF = 4, 16
 # Moves along a curve from the best of these.
-SLIDES = 3
+SLIDES = 6
 # Times that an interval of a trimming curve is narrowed to what is in a part.
 NARROWINGS = 6
 
@@ -88,6 +89,16 @@ def towards(a, b, piece, t, q):
 
 
 @kernel
+def places_on_each(a):
+    """How many places on each piece of a trimming curve in a part are tried."""
+    r, own = leaf_ints(a.side, a.leaf), a.side.own
+    first, met = own[S.LISTS] + own[r + S.LIST], 0
+    for k in range(own[r + S.N_LIST]):
+        met += 1 if meets(whole_box(a.side, own[first + k]), a.box) else 0
+    return min(max(ON_A_LEAF // max(met, 1), 1), ON_A_PIECE)
+
+
+@kernel
 def nearest_on_trim(a, b, counts):
     """(parameters of A's place and B's, distance): of places along A's trimming curves in its part,
     the one that is nearest to B's part; inf where there is none."""
@@ -97,29 +108,34 @@ def nearest_on_trim(a, b, counts):
     best, least = (0.0, 0.0, start[0], start[1]), inf
     if own[r + S.DIM] != 2 or own[r + S.CUT] == 0:
         return best, least
-    first, tried = own[S.LISTS] + own[r + S.LIST], 0
+    first, places = own[S.LISTS] + own[r + S.LIST], places_on_each(a)
     for k in range(own[r + S.N_LIST]):
         piece = own[first + k]
         o = own[S.R_PIECES] + S.PIECE_REALS * piece
         ta, tb = side.numbers[o], side.numbers[o + 1]
-        if tried >= ON_A_LEAF or not meets(part_box(side, piece, ta, tb), a.box):
+        if not meets(part_box(side, piece, ta, tb), a.box):
             continue
         ta, tb = within_box(side, piece, a.box)
         at, here = 0.5 * (ta + tb), inf
-        for i in range(ON_A_PIECE):
-            t = ta + (i + 0.5) / ON_A_PIECE * (tb - ta)
-            known, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
-            tried += 1 if known else 0
+        for i in range(places):
+            t = ta + (i + 0.5) / places * (tb - ta)
+            _, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
             if distance < here:
                 at, here = t, distance
             if distance < least:
                 best, least = q, distance
         if here > least:
             continue
-        for _ in range(SLIDES):  # so that the way to B is across the curve
-            t = min(max(towards(a, b, piece, at, best), ta), tb)
-            _, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
-            if distance >= least:
+        # so that the way to B is across the curve, or as far as the part goes
+        step = towards(a, b, piece, at, best) - at
+        for _ in range(SLIDES):
+            t = min(max(at + step, ta), tb)
+            known, q, distance = from_trim(a, b, piece, t, (best[2], best[3]), counts)
+            if not known:
+                step = 0.5 * (t - at)
+            elif distance < least:
+                best, least, at = q, distance, t
+                step = towards(a, b, piece, at, best) - at
+            else:
                 break
-            best, least, at = q, distance, t
     return best, least

@@ -98,7 +98,7 @@ def scratch(thread: int) -> tuple[Array, Any, Array]:
 
 def new_scratch() -> tuple[Array, Any, Array]:
     """A search's room for one who keeps it."""
-    return np.empty(2048 + 3 * PAIRS), np.empty(2 * HEAP, dtype=np.int64), np.empty(HEAP)
+    return np.empty(2048 + C.LEFT_REALS * PAIRS), np.empty(2 * HEAP, dtype=np.int64), np.empty(HEAP)
 
 
 def started(sought: Sought, size: float, away: float) -> tuple[Array, Array]:

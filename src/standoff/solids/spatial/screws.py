@@ -5,7 +5,7 @@ What is found here only decides which potential is tried; nothing is proven by i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -16,7 +16,7 @@ from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.solids.spatial.leaves import Leaf
-from standoff.solids.spatial.tolerances import ALONG_SCREW, LEAST_TURN, MANY_SCREWS
+from standoff.solids.spatial.tolerances import ALONG_SCREW, LEAST_TURN, MANY_SCREWS, OFF_THREAD
 
 # Samples of a face along each of its parameters.
 SAMPLES = 8
@@ -41,28 +41,41 @@ class _Thread:
     screw: Screw
 
 
-def put_screws(leaves: Iterable[Leaf], charts: Mapping[int, FaceChart]) -> None:
-    """Give each leaf of a face along a screw the screw of its thread."""
+def put_screws(
+    leaves: Iterable[Leaf],
+    charts: Mapping[int, FaceChart],
+    beside: Mapping[int, Sequence[int]],
+) -> None:
+    """Give each leaf of a face along a screw, and of an edge of one, the screw of its thread.
+
+    `beside`: the charts beside each edge, by its number as a feature.
+    """
     screws = {
         number: thread.screw for thread in _threads(charts.values()) for number in thread.charts
     }
     for leaf in leaves:
-        if leaf.dim == 2 and leaf.kind == S.NO_KIND and leaf.chart in screws:
-            screw = screws[leaf.chart]
-            leaf.kind = S.SCREWED
+        if leaf.kind != S.NO_KIND:
+            continue
+        own = [leaf.chart] if leaf.dim == 2 else beside[leaf.feature]
+        screw = next((screws[number] for number in own if number in screws), None)
+        if screw is not None:
+            leaf.kind, leaf.beside = S.SCREWED, S.NO_KIND
             record = [1.0, screw.rise, 0.0, *screw.point, *screw.axis]
             leaf.reals[S.NATURAL_REALS : S.NATURAL_REALS + 9] = record
 
 
 def _threads(charts: Iterable[FaceChart]) -> list[_Thread]:
-    """Faces along one screw, together: of a whole thread it is known far better than of a piece."""
+    """Faces along one screw, together: of a whole thread it is known far better than of a piece.
+    Its crests and roots have many screws, that one among them."""
     found: list[_Thread] = []
+    others: list[tuple[int, Array, Array]] = []
     for chart in charts:
         if not isinstance(chart.surface, NurbsSurface):
             continue
         points, normals = _sampled(chart)
         screw = screw_of(points, normals)
         if screw is None:
+            others.append((chart.number, points, normals))
             continue
         for thread in found:
             both = np.concatenate([thread.points, points])
@@ -74,7 +87,18 @@ def _threads(charts: Iterable[FaceChart]) -> list[_Thread]:
                 break
         else:
             found.append(_Thread([chart.number], points, normals, screw))
+    for number, points, normals in others:
+        along = [each for each in found if _is_along(each.screw, points, normals)]
+        if along:
+            along[0].charts.append(number)
     return found
+
+
+def _is_along(screw: Screw, points: Array, normals: Array) -> bool:
+    """Does a screw motion move a surface along itself, nearly?"""
+    ways = np.cross(screw.axis, points - screw.point) + screw.rise * screw.axis
+    speeds = np.linalg.norm(ways, axis=1)
+    return bool((np.abs((ways * normals).sum(axis=1)) <= OFF_THREAD * speeds).all())
 
 
 def _sampled(chart: FaceChart) -> tuple[Array, Array]:

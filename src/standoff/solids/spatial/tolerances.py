@@ -111,3 +111,6 @@ MANY_SCREWS: Final = 1e-2
 LEAST_TURN: Final = 1e-2
 """Of a motion whose turn and velocity, over the face's size, have the length 1: below this it is a
 translation."""
+OFF_THREAD: Final = 1e-2
+"""Sine: a face whose normals are across the velocities of a thread's screw motion to this is one of
+its crests or roots."""

@@ -52,7 +52,6 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, 
         for number, chart in charts.items()
         for leaf in face_leaves(boundary, chart, pieces, own[number], boundary.size)
     ]
-    put_screws(found, charts)
     columns = columns_of(pieces)
     kinds = proven_kinds(boundary, charts, pieces, columns)
     sampled = sampled_edges(kinds, boundary.edge_kinds)
@@ -69,6 +68,10 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, 
             beside = round_faces.get(number, (-1, np.zeros(9)))
             proven = number not in sampled
             found += edge_leaves(boundary, number, parts, cones[number], beside, proven)
+    beside_edges: dict[int, list[int]] = {boundary.n_faces + piece.edge: [] for piece in pieces}
+    for piece in pieces:
+        beside_edges[boundary.n_faces + piece.edge].append(piece.chart)
+    put_screws(found, charts, beside_edges)
     found += [vertex_leaf(boundary, number) for number in range(boundary.n_vertices)]
     return found, pieces, sampled
 
