@@ -329,7 +329,7 @@ class SolidProximity(KeepsReadOnly, PlainData):
         turn = new[:3] @ old[:3].T
 
         def at(points: Array) -> Array:
-            return (points - old[3]) @ turn.T + new[3]
+            return np.asarray((points - old[3]) @ turn.T + new[3])
 
         def pairs(given: tuple[PointPair, ...]) -> tuple[PointPair, ...]:
             return tuple((at(x), at(y)) for x, y in given)
