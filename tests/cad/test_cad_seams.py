@@ -95,3 +95,25 @@ def test_a_drilled_seam_shows_each_point_once(kind: str, tmp_path: Path) -> None
     true = made.from_boundary(shape, within)
     assert np.abs(answer.distance) == pytest.approx(true, abs=1e-6)
     assert (answer.distance > 0.0).all()
+
+
+@pytest.mark.parametrize(("first", "turn"), [(0.5, 0.5), (0.75, 0.25), (0.0, 0.5)])
+def test_a_bend_that_ends_at_the_seam_of_its_torus_loads(
+    first: float, turn: float, tmp_path: Path
+) -> None:
+    """It is cut along its tube, and the flat ends keep their edges."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+
+    boxes = {
+        0.5: (8, 4, 2, (-4, -4, -1)),
+        0.75: (4, 4, 2, (0, -4, -1)),
+        0.0: (8, 4, 2, (-4, 0, -1)),
+    }
+    part = read_back(
+        BRepAlgoAPI_Common(made.ring(2.0, 0.5), made.box(*boxes[first])).Shape(), tmp_path
+    )
+    angle = 2.0 * np.pi * turn
+    report = part.shape.check()
+    assert report.volume == pytest.approx(angle * 2.0 * np.pi * 0.25, rel=1e-9)
+    assert report.area == pytest.approx(angle * 2.0 * np.pi + 0.5 * np.pi, rel=1e-9)
+    assert part.report.slack < 1e-8

@@ -41,7 +41,22 @@ def without_seams(solid: Any) -> tuple[Any, int, list[int]]:
         if not result.IsSame(face):
             context.Replace(face, result)
     numbers = [n for n, face in enumerate(faces, 1) for _ in explored(context.Apply(face), "face")]
-    return cast("solid", context.Apply(solid)), len(closed), numbers
+    return _mended(solid, context.Apply(solid)), len(closed), numbers
+
+
+def _mended(solid: Any, divided: Any) -> Any:
+    """The divided solid as one that OpenCASCADE's check finds to be right, if that found the whole
+    one so: next to a tube that ends at its seam the divider leaves an edge's trimming curve on the
+    far side of the neighbour's period."""
+    from OCP.BRepCheck import BRepCheck_Analyzer
+    from OCP.ShapeFix import ShapeFix_Shape
+
+    if BRepCheck_Analyzer(divided).IsValid() or not BRepCheck_Analyzer(solid).IsValid():
+        return cast("solid", divided)
+    fix = ShapeFix_Shape(divided)
+    fix.Perform()
+    same = len(list(explored(fix.Shape(), "face"))) == len(list(explored(divided, "face")))
+    return cast("solid", fix.Shape() if same else divided)
 
 
 def once(face: Any) -> list[Any]:
