@@ -55,18 +55,14 @@ def brute_gap(pair: PlacedPair, leaves: tuple[int, int], shift: Array) -> float:
     a vector of A's frame."""
     pose = pair.relative.copy()
     pose[9:] += shift
-    packed, numbers = (pair.a.packed, pair.b.packed), np.array(leaves, dtype=np.int64)
     grids = []
     for solid, leaf in zip((pair.a, pair.b), leaves, strict=True):
         u0, u1, v0, v1 = solid.leaves[leaf].reals[:4]
         grids.append([(u, v) for u in np.linspace(u0, u1, 3) for v in np.linspace(v0, v1, 3)])
-    least, counts = np.inf, np.zeros(8, dtype=np.int64)
-    for first in grids[0]:
-        for other in grids[1]:
-            values = np.array([*first, *other, 0.0, 0.0])
-            nearest_in_leaves(packed, pose, numbers, values, counts)
-            if values[5] > 0.0:  # both points are on the solids
-                least = min(least, values[4])
+    rows = np.array([[0.0, *leaves, *p, *q] for p in grids[0] for q in grids[1]])
+    counts = np.zeros(8, dtype=np.int64)
+    nearest_in_leaves((pair.a.packed, pair.b.packed), pose, rows, counts)
+    least = rows[:, 0].min()  # infinite where a point is off its solid
     return float(least)
 
 

@@ -133,7 +133,8 @@ def close_loosely(a, b, first, left, best, minima, room, counts):
     for k in range(first, left):
         best[TOLERANCE] = tolerance
         pair = pair_left(pairs, k)
-        if pair[2] < goal_of(best) <= pair[4] and best[MET] == 0.0:
+        at_once = pair[2] < goal_of(best) <= pair[4] and evaluations(counts) <= best[BUDGET]
+        if at_once and best[MET] == 0.0:
             pa = S.Part(a, pair[0], leaf_box(a, pair[0]))
             pb = S.Part(b, pair[1], leaf_box(b, pair[1]))
             if closed_by_any(pa, pb, (pair[3], pair[4]), best, minima, False, counts):
