@@ -91,8 +91,8 @@ def test_through_contact_and_out_again(
         met += 1
         assert row[F.DISTANCE] == pytest.approx(answer.distance, abs=1e-9)
         assert row[F.CERTIFIED] == 0.0
-        assert row[F.LOWER] == -np.inf
         assert row[F.UPPER] == pytest.approx(answer.upper_bound, abs=1e-9)
+        assert row[F.LOWER] == pytest.approx(answer.lower_bound, abs=1e-9)
         assert row[F.DISTANCE] - 1e-12 <= row[F.UPPER] < 0.0
         np.testing.assert_allclose(row[F.NORMAL], answer.normal, rtol=0.0, atol=1e-8)
         minima = told.minima(k)

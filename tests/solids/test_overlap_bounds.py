@@ -10,7 +10,17 @@ import pytest
 
 import standoff as so
 from draws import draws
-from families.solid_shapes import ball, peg, prism, samples, socket, taper_bore, taper_plug, tube
+from families.solid_shapes import (
+    ball,
+    bolt,
+    peg,
+    prism,
+    samples,
+    socket,
+    taper_bore,
+    taper_plug,
+    tube,
+)
 from shares import only
 from standoff.clearance import Fit, Wanted, check
 from standoff.solids import Solid, distance
@@ -112,6 +122,52 @@ def test_a_box_that_is_deep_in_another_one(
     assert told.overlap.reason == ""
     moved = so.Pose(np.eye(3), np.add(shift, told.overlap.parting))
     assert distance(ten, four, STILL, moved).distance >= 0.0
+
+
+def drawn_in(a: Solid, b: Solid, rng: np.random.Generator) -> list[so.Pose]:
+    """B goes into A, and turns, in frames."""
+    way, turn, spin = rng.normal(size=3), rng.normal(size=3), 0.2 * rng.normal(size=3)
+    far = 0.5 * (a.size + b.size) * way / np.linalg.norm(way)
+    return [
+        so.Pose.exp(s * spin, (1.0 - s) * far) @ so.Pose.exp(turn)
+        for s in np.linspace(0.0, 1.0, 40)
+    ]
+
+
+@pytest.mark.parametrize("names", [("tube", "bolt"), ("bridge", "ball"), ("bridge", "bridge")])
+def test_a_plane_comes_between_the_solids_of_a_frame_by_a_move(
+    names: tuple[str, str], rng: np.random.Generator
+) -> None:
+    """In frames too an overlap has both bounds. All samples of A are below those of B after it."""
+    bridge = prism([(0, 0), (3, 0), (3, 1), (2, 1), (2, 0.5), (1, 0.5), (1, 1), (0, 1)], 1.0)
+    shapes = {"tube": tube(1.0, 2.0, 0.0, 1.0), "bolt": bolt(), "bridge": bridge, "ball": ball(0.7)}
+    a, b = (shapes[name] for name in names)
+    overlaps = 0
+    for _ in range(draws(4)):
+        tracker, poses = so.Tracker(a, b), drawn_in(a, b, rng)
+        _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
+        for answer, pose in zip(answers, poses, strict=True):
+            if answer.status is not Status.OVERLAPPING or answer.counts.restarts:
+                continue
+            way, overlaps = answer.overlap.parting, overlaps + 1
+            assert answer.lower_bound <= answer.distance <= answer.upper_bound < 0.0
+            n = way / np.linalg.norm(way)
+            moved = samples(b, 8) @ np.asarray(pose.rotation).T + pose.translation + way
+            assert (samples(a, 8) @ n).max() <= (moved @ n).min()
+    assert overlaps
+
+
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.0, 0.0, 0.3)])
+def test_a_frame_draws_what_is_round_out_as_far_as_it_is_in(turn: tuple[float, ...]) -> None:
+    """Straight up, which is also the normal: to the top of the cylinder that lies, in closed form,
+    and not of its box, which a turn makes higher."""
+    table = prism([(-4, -4), (4, -4), (4, 4), (-4, 4)], 1.0)
+    lying = so.Pose.exp((np.pi / 2, 0.0, 0.0)) @ so.Pose.exp(turn)
+    tracker = so.Tracker(table, peg(1.0, -2.0, 2.0))
+    poses = [so.Pose.exp((0, 0, 0), (0.0, 0.0, 2.0 - 0.01 * k)) @ lying for k in range(12)]
+    _, answers = tracker.run(tracker.start(STILL, poses[0]), STILL, poses)
+    assert answers[-1].status is Status.OVERLAPPING
+    assert answers[-1].lower_bound == pytest.approx(-0.11, abs=1e-9)
 
 
 def test_a_box_is_parted_from_a_half_space_along_its_normal() -> None:

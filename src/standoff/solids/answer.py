@@ -102,8 +102,8 @@ class Overlap(NamedTuple):
     depth : float
         No translation shorter than this parts the solids: twice the radius, or more.
     parting : (3,) array, optional
-        A vector, world axes: B, moved by it, is proven to be apart from A. None in frames, which
-        do not ask for it.
+        A vector, world axes: B, moved by it, is proven to be apart from A. In frames of a tracker,
+        which ask nothing anew, one along which a plane comes between the solids.
     held : float
         No point of the boundary of one, in the other, is deeper in it than this: of a pin that is
         pressed into its bore, the interference. inf where that was not asked, or is not proven.
@@ -213,8 +213,7 @@ class SolidProximity(KeepsReadOnly, PlainData):
     lower_bound, upper_bound : float
         Proven: the true value of what ``distance`` stands for is neither less nor more. In an
         overlap no translation shorter than ``-upper_bound`` parts the solids, and one as long as
-        ``-lower_bound`` does, or no boundary is deeper in the other (`Overlap.most`). In frames of
-        a tracker, which do not ask for that, the lower bound is minus infinity.
+        ``-lower_bound`` does, or no boundary is deeper in the other (`Overlap.most`).
     slack : float
         How far the given boundaries may be from what they stand for, both together [length].
     point_a, point_b : (3,) arrays

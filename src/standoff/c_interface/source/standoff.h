@@ -163,7 +163,7 @@ typedef struct standoff_solids standoff_solids;
 
 typedef struct {
     double distance; /* signed: less than 0 where they overlap, of the deepest place that is felt */
-    double lower_bound; /* of the true distance, certified; -inf where they overlap */
+    double lower_bound; /* of the true distance, certified; in an overlap -(a move that parts them) */
     double upper_bound; /* where they overlap no translation shorter than this parts them */
     double point_a[3];  /* the witness points */
     double point_b[3];

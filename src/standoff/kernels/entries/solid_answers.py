@@ -167,15 +167,16 @@ def tell_place(g, both, k, at, felt):
 
 
 @kernel
-def tell_overlap(g, both, n, first, depth):
-    """The answer of a frame of a contact with n places, in which a depth is proven: the deepest
-    place that is felt; where local minima are asked, all that are, those that are no overlap, and
-    the other ways out."""
+def tell_overlap(g, both, met):
+    """The answer of a frame of a contact in which a depth is proven: the deepest place that is
+    felt; where local minima are asked, all that are, those that are no overlap, and the other ways
+    out."""
+    n, first = met.n, met.first
     room = ahead(g.block, B.W_ROOM)
     sets, kept = ahead(room, AT_SETS), ahead(g.block, B.CONTACT)
-    out = put_answer(g, OVERLAPPING, -inf, -depth)
+    out = put_answer(g, OVERLAPPING, -norm(met.way), -met.depth)
     tell_place(g, both, first, 0, True)
-    distance = min(-depth, sets[SET_REALS * first])
+    distance = min(-met.depth, sets[SET_REALS * first])
     count, most = 1, g.asked[B.Q_FRAME + 2] - g.asked[B.Q_FRAME + 3]
     if g.asked[B.Q_FRAME + 2] > 0.0:
         out[B.A_COMPLETE] = 1.0 if room[LOST] == 0.0 else 0.0

@@ -31,10 +31,10 @@ KEEPS = types.Tuple((WRITE, WRITE, WRITE, WRITE, WRITE, WRITE))
 # What a search for a point's depth fills, and its room.
 PROBING = types.Tuple((WRITE, WRITE, ROOM))
 # What a frame tells: how many places; the deepest that is felt, -1 where no overlap is proven; a
-# length that no translation is less than which parts the solids; and of that place the signed
-# distance, both points and the normal, A's frame.
-N_PLACES, FIRST, DEPTH, DISTANCE, AT_BOTH, ALONG = 0, 1, 2, 3, 4, 10
-TOLD_REALS = 13
+# length that no translation is less than which parts the solids; of that place the signed
+# distance, both points and the normal, A's frame; and a translation that parts the solids.
+N_PLACES, FIRST, DEPTH, DISTANCE, AT_BOTH, ALONG, PARTING = 0, 1, 2, 3, 4, 10, 13
+TOLD_REALS = 16
 
 
 @kernel
@@ -45,7 +45,7 @@ def tell_met(met, row, room, told):
     for k in range(6):
         told[AT_BOTH + k] = room[o + POINTS + k]
     for k in range(3):
-        told[ALONG + k] = room[o + NORMAL + k]
+        told[ALONG + k], told[PARTING + k] = room[o + NORMAL + k], met.way[k]
 
 
 # As a search has them, and what sets of minima are written to.

@@ -144,7 +144,7 @@ def meet(g):
     met = meet_at(two, both, kept, g.asked, room, g.counts)
     if met.first < 0:
         return False
-    tell_overlap(g, both, met.n, met.first, met.depth)
+    tell_overlap(g, both, met)
     front = ahead(s, B.BEST), ahead(s, B.STORE), ahead(s, B.BRANCHES)
     go_on_from(kept, ahead(room, AT_SETS + SET_REALS * met.first), front)
     s[B.MODE], s[B.OVERLAPPED] = B.IN_CONTACT, 1.0

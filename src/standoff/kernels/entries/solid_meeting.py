@@ -27,9 +27,11 @@ from standoff.kernels.solids.contact_places import (
 from standoff.kernels.solids.contact_sets import NO_MINIMUM
 from standoff.kernels.solids.front_branches import BRANCH_REALS
 from standoff.kernels.solids.front_rows import N_BRANCHES, NEXT_BRANCH
-from standoff.kernels.solids.minima_sets import SET_REALS
+from standoff.kernels.solids.minima_sets import SET_REALS, SET_ROW
 from standoff.kernels.solids.overlap_depth import PLENTY, ball_depth, depth_at, middle_of
+from standoff.kernels.solids.patch import normal_of
 from standoff.kernels.solids.point_depth import ask_search
+from standoff.kernels.solids.spatial_pieces import ZERO
 from standoff.kernels.solids.spatial_progress import (
     ABOVE,
     BOUND,
@@ -37,8 +39,10 @@ from standoff.kernels.solids.spatial_progress import (
     MINIMUM_REALS,
     MOST_MINIMA,
     N_MINIMA,
+    ROUNDING,
     TOLERANCE,
 )
+from standoff.kernels.solids.way_past import way_past
 
 
 class Met(NamedTuple):
@@ -49,11 +53,13 @@ class Met(NamedTuple):
     n : how many places there are.
     first : the deepest that is felt; -1 where it is not proven that the solids overlap.
     depth : no translation shorter than this parts the solids.
+    way : one that does, B's, A's frame.
     """
 
     n: Any
     first: Any
     depth: Any
+    way: Any
 
 
 @kernel
@@ -103,12 +109,15 @@ def meet_at(two, both, kept, asked, room, counts):
             if depth <= enough:
                 depth = depth_at(two, (room, minima, sets), k, enough)
     if first < 0 or depth <= enough:
-        return Met(n, -1, depth)
+        return Met(n, -1, depth, ZERO)
     o = SET_REALS * first
     if depth < PLENTY * -sets[o]:
         middle = middle_of(minima, int(room[N_MINIMA]), sets[o + BOUND])
         depth = max(depth, ball_depth(two, middle, -0.5 * sets[o]))
-    return Met(n, first, depth)
+    normal = normal_of(minima, MINIMUM_REALS * int(sets[o + SET_ROW]))
+    stack = two.probe.heap[1]
+    way = way_past(both.a, both.b, normal, -sets[o], room[ROUNDING], stack)
+    return Met(n, first, depth, way)
 
 
 @kernel

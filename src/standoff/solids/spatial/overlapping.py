@@ -111,6 +111,7 @@ def told_in_contact(
     signed: SignedMinima,
     felt: NDArray[np.bool_],
     proven: float,
+    parting: Array,
     sought: Sought,
     minima: float | None,
 ) -> SolidProximity:
@@ -123,6 +124,8 @@ def told_in_contact(
         Of each minimum, has it come from above 0?
     proven : float
         No translation shorter than this parts the solids, length.
+    parting : (3,) array
+        One that does, A's frame.
     minima : float or None
         As of `told_overlapping`; places that are not felt are told last.
     """
@@ -130,7 +133,8 @@ def told_in_contact(
     rows = list(signed.sets[felt & (depth < 0.0)][:MOST_REGIONS])
     ball = ball_of(pair, signed, rows[0])
     # a smaller ball is inside both too, and its radius is told to be half the depth at most
-    overlap = Overlap(ball.common_point, min(ball.radius, 0.5 * proven), proven)
+    radius = min(ball.radius, 0.5 * proven)
+    overlap = Overlap(ball.common_point, radius, proven, pair.ra @ parting)
     if minima is None:
         return _told(pair, signed, overlap, rows[:1], sought)[0]
     rows += list(signed.sets[(depth >= 0.0) & (depth <= minima)])

@@ -14,6 +14,7 @@ from standoff.kernels.entries.solid_contact import (
     DEPTH,
     FIRST,
     N_PLACES,
+    PARTING,
     TOLD_REALS,
     follow_contact,
 )
@@ -44,11 +45,13 @@ class Places(NamedTuple):
     signed : the minima of the signed distance.
     felt : (m,) array of bool: has each come from above 0?
     depth : no translation shorter than this parts the solids.
+    parting : (3,) array; one that does, A's frame.
     """
 
     signed: SignedMinima
     felt: NDArray[np.bool_]
     depth: float
+    parting: Array
 
 
 class ContactWork(NamedTuple):
@@ -144,7 +147,8 @@ class ContactFrames:
         sets = room[AT_SETS : AT_SETS + SET_REALS * n]
         signed = signed_told(room, room[AT_NORMALS:AT_SETS], sets, self.work.counts)
         rows = kept[P.F_AT : P.F_AT + P.PLACE_REALS * n].reshape(-1, P.PLACE_REALS)
-        return Places(signed, rows[:, P.P_FELT] > 0.0, float(told[DEPTH]))
+        parting = told[PARTING : PARTING + 3].copy()
+        return Places(signed, rows[:, P.P_FELT] > 0.0, float(told[DEPTH]), parting)
 
     def merged(self) -> NDArray[np.int64]:
         """Of the last frame, as `Frames.merged` of the front."""

@@ -17,6 +17,7 @@ from standoff.kernels.entries.solid_contact import (
     DEPTH,
     DISTANCE,
     FIRST,
+    PARTING,
     follow_contact,
 )
 from standoff.kernels.state.arrays import BAD_POSE_A
@@ -190,7 +191,8 @@ class SolidFrameBuffer:
         np.dot(self._pressed_along, self._turn, out=self._away)
         upper = -told.item(DEPTH)
         distance: float = min(upper, told.item(DISTANCE))
-        self.distance, self.lower_bound = distance, -math.inf
+        way = self._turn.T @ told[PARTING : PARTING + 3]
+        self.distance, self.lower_bound = distance, -float(np.linalg.norm(way)) - self._slack
         self.upper_bound = upper + self._slack
         return distance
 
