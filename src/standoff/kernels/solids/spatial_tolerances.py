@@ -123,3 +123,5 @@ end."""
 BESIDE_EDGE: Final = 1e-2
 """Cosine to an edge's or a vertex's sum of normals from which on they say on which side a point
 is; less is told by a ray."""
+WAY_ROUNDINGS: Final = 4.0
+"""Of both solids' rounding: a way past each other has that of two heights, and of B's move."""

@@ -16,9 +16,7 @@ from standoff.kernels.solids.spatial_boxes import (
 )
 from standoff.kernels.solids.spatial_heights import height_greatest
 from standoff.kernels.solids.spatial_pieces import ZERO, leaf_box, leaf_ints
-
-# Of both solids' rounding: two heights, and B's move.
-HEIGHT_ROUNDINGS = 4.0
+from standoff.kernels.solids.spatial_tolerances import WAY_ROUNDINGS
 
 
 class Height(NamedTuple):
@@ -90,7 +88,7 @@ def way_past(a, b, normal, least, rounding, stack):
             n = scale(1.0 if k % 2 == 0 else -1.0, node_axis(side, 0, (k % 6) // 2))
         down = scale(-1.0, n)
         length = height_along(a, n, stack) + height_along(b, down, stack)
-        length = max(length, least) + HEIGHT_ROUNDINGS * rounding
+        length = max(length, least) + WAY_ROUNDINGS * rounding
         if length < best:
             best, way = length, scale(length, n)
     return way
