@@ -119,6 +119,7 @@ def test_a_judge_that_is_wrong_refuses_no_part(monkeypatch: pytest.MonkeyPatch) 
     for name in ("area_of", "volume_of"):
         own = getattr(measures, name)
         monkeypatch.setattr(measures, name, partial(_off, own))
+        monkeypatch.setattr(making, name, partial(_off, own))
     found = so.cad.from_shape(shape)[0].report
     assert found.area == right.area
     assert max(found.area_error, found.volume_error) < 1e-9

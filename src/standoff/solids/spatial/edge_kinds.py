@@ -33,7 +33,6 @@ from standoff.solids.spatial.analytic import natural_of
 from standoff.solids.spatial.derivative_bounds import curve_derivatives
 from standoff.solids.spatial.leaves import (
     UNKNOWN,
-    Cone,
     NormalCones,
     edge_flags,
     face_cones,
@@ -45,6 +44,7 @@ from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
 # Parts of an edge at first, radians; and how often a part is halved.
 FIRST_ARC = 0.6
 MOST_HALVINGS = 5
+TINY = float(np.finfo(np.float64).tiny)
 
 Range = tuple[float, float]
 
@@ -75,6 +75,8 @@ def proven_kinds(
             asked[k] = list(edge_ranges(edge.curve, FIRST_ARC, boundary.size))
     told: dict[int, set[EdgeKind | None]] = {k: set() for k in asked}
     for depth in range(MOST_HALVINGS + 1):
+        if not asked:
+            break
         kinds, lost = _decided(boundary, asked, sides, face_cones(charts, columns, asked))
         waiting: dict[int, list[Range]] = {}
         number = 0
@@ -122,18 +124,16 @@ def _sides(boundary: PackedParts) -> list[list[Side]]:
     return [[Side(face, way) for face, way in each.items()] for each in found]
 
 
-def _tangents(curve: Curve, parts: list[Range]) -> list[Cone]:
-    """A cone around the directions of a curve in each part."""
-    found = []
-    for (first, last), d in zip(parts, curve_derivatives(curve, parts), strict=True):
-        middle = 0.5 * (first + last)
-        tangent = np.asarray(curve.jet(middle)[1], dtype=float)
-        size = float(np.linalg.norm(tangent))
-        away = float(d[1]) * 0.5 * (last - first)
-        known = size > 0.0 and away < size
-        angle = float(np.arcsin(away / size)) if known else UNKNOWN
-        found.append((tangent / (size or 1.0), angle))
-    return found
+def _tangents(curve: Curve, parts: list[Range]) -> tuple[Array, Array]:
+    """(axes (n, 3), half angles (n,)) of cones around the directions of a curve in each part."""
+    first, last = np.array(parts).T
+    tangents = curve.jets(0.5 * (first + last))[:, 1]
+    size = np.linalg.norm(tangents, axis=1)
+    away = curve_derivatives(curve, parts)[:, 1] * 0.5 * (last - first)
+    angle = np.full(len(parts), UNKNOWN)
+    with np.errstate(over="ignore"):
+        np.arcsin(away / np.maximum(size, TINY), out=angle, where=away < size)
+    return tangents / np.maximum(size, TINY)[:, None], angle
 
 
 def _decided(
@@ -147,9 +147,7 @@ def _decided(
     that leave it open whatever the tangent is."""
     counts = [len(parts) for parts in asked.values()]
     count = sum(counts)
-    tangents = [
-        t for k, parts in asked.items() for t in _tangents(boundary.edge_parts[k].curve, parts)
-    ]
+    tangents = [_tangents(boundary.edge_parts[k].curve, parts) for k, parts in asked.items()]
     edges = np.repeat(np.array(list(asked), dtype=np.int64), counts)
     firsts, ways = np.reshape([(sides[k][0].face, sides[k][0].way) for k in asked], (-1, 2)).T
     mine = cones.face == np.repeat(firsts, counts)[cones.part]
@@ -158,8 +156,8 @@ def _decided(
     at = cones.part[ones]
     i, j = np.repeat(ones, many[at]), others[ranked((np.cumsum(many) - many)[at], many[at])]
     part = cones.part[i]
-    t = np.reshape([axis for axis, _ in tangents], (-1, 3)) * np.repeat(ways, counts)[:, None]
-    turns = np.array([angle for _, angle in tangents])[part]
+    axes, wide = (np.concatenate(rows) for rows in zip(*tangents, strict=True))
+    t, turns = axes * np.repeat(ways, counts)[:, None], wide[part]
     kinds = _kinds(cones.axis[i], cones.axis[j], t[part], (cones.angle[i], cones.angle[j], turns))
     lost = np.array([_smooth(boundary, k) for k in edges.tolist()], dtype=bool)
     lost[part[kinds.lost & cones.final[i] & cones.final[j]]] = True

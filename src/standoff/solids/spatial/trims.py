@@ -229,10 +229,11 @@ def _halved(
     waiting = spans
     for depth in range(MOST_HALVINGS + 1):
         again: list[tuple[float, float]] = []
-        for (a, b), d in zip(waiting, curve_derivatives(curve, waiting), strict=True):
+        speeds = np.linalg.norm(curve.jets(np.mean(waiting, axis=1))[:, 1], axis=1)
+        bounds = curve_derivatives(curve, waiting)
+        for (a, b), d, speed in zip(waiting, bounds, speeds.tolist(), strict=True):
             known = bool(np.isfinite(d[:2]).all())
             if known:
-                speed = float(np.linalg.norm(curve.jet(0.5 * (a + b))[1]))
                 done = d[1] * (b - a) <= arc * speed and d[0] * (b - a) <= longest
             else:
                 done = depth == BLIND_HALVINGS
