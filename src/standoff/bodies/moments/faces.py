@@ -158,6 +158,8 @@ def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array])
     times = np.linspace(first, last, SAMPLES)
     cuts = [first, last]
     for axis, values in enumerate((u, v)):
+        if not len(breaks[axis]):
+            continue
         away = values[:, None] - breaks[axis]
         for k, m in np.argwhere(away[:-1] * away[1:] < 0.0):
 

@@ -67,12 +67,12 @@ def proven_kinds(
     for piece in pieces:
         of_edge.setdefault(piece.edge, []).append(piece)
     asked: dict[int, list[Range]] = {}
-    for k, edge in enumerate(boundary.edge_parts):
+    for k in range(boundary.n_edges):
         if len(sides[k]) != 2:
             continue
         found[k] = _constant(boundary, charts, of_edge.get(k, []), sides[k], k)
-        if found[k] is None:
-            asked[k] = list(edge_ranges(edge.curve, FIRST_ARC, boundary.size))
+        if found[k] is None and (parts := _asked(boundary, of_edge.get(k, []), k)):
+            asked[k] = parts
     told: dict[int, set[EdgeKind | None]] = {k: set() for k in asked}
     for depth in range(MOST_HALVINGS + 1):
         if not asked:
@@ -105,6 +105,28 @@ def sampled_edges(kinds: list[EdgeKind | None], told: tuple[EdgeKind, ...]) -> t
 def _smooth(boundary: PackedParts, edge: int) -> bool:
     """Was an edge found to be smooth? No halving makes its normals' cones as narrow as that."""
     return bool(edge_flags(boundary, edge) & L.SMOOTH)
+
+
+def _asked(boundary: PackedParts, pieces: list[Piece], edge: int) -> list[Range]:
+    """The parts of an edge whose kinds cones may show, if any."""
+    parts = list(edge_ranges(boundary.edge_parts[edge].curve, FIRST_ARC, boundary.size))
+    return [] if _smooth(boundary, edge) and _turning(boundary, pieces, parts[0]) else parts
+
+
+def _turning(boundary: PackedParts, pieces: list[Piece], part: Range) -> bool:
+    """Do normals of a face turn along a part of an edge? Then no cones of them show it smooth."""
+    for piece in pieces:
+        first, last = max(part[0], piece.first), min(part[1], piece.last)
+        if first < last:
+            n, m = (_normal(boundary, piece, t) for t in (first, last))
+            if float(between(n, m)) > 2.0 * SMOOTH_ANGLE + TURN_ROUNDING:
+                return True
+    return False
+
+
+def _normal(boundary: PackedParts, piece: Piece, t: float) -> Array:
+    u, v, *_ = coedge_parameters(boundary.ints, boundary.reals, piece.coedge, t)
+    return np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v))
 
 
 def _sides(boundary: PackedParts) -> list[list[Side]]:
@@ -219,8 +241,7 @@ def _constant(
     for own in by_side:
         piece = next((p for p in own if p.first <= middle <= p.last), own[0])
         t = min(max(middle, piece.first), piece.last)
-        u, v, *_ = coedge_parameters(boundary.ints, boundary.reals, piece.coedge, t)
-        normals.append(np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v)))
+        normals.append(_normal(boundary, piece, t))
         tangent = np.asarray(curve.jet(t)[1], dtype=float)
     way = sides[0].way * tangent / np.linalg.norm(tangent)
     shown = _kinds(normals[0], normals[1], way, (0.0, 0.0, 0.0)).shown
