@@ -14,7 +14,11 @@ import pytest
 
 import standoff as so
 from shares import only
+from standoff.bodies.face_leaves import face_charts
 from standoff.geometry import Cone, Cylinder, NurbsSurface, Plane, Sphere, Torus
+from standoff.solids.spatial import edge_kinds
+from standoff.solids.spatial.trims import columns_of, pieces_of
+from standoff_studies.soak.solid_parts import MAKERS
 
 pytest.importorskip("OCP", reason="OpenCASCADE comes with the extra 'cad'")
 
@@ -119,6 +123,7 @@ def test_a_judge_that_is_wrong_refuses_no_part(monkeypatch: pytest.MonkeyPatch) 
     for name in ("area_of", "volume_of"):
         own = getattr(measures, name)
         monkeypatch.setattr(measures, name, partial(_off, own))
+        monkeypatch.setattr(making, name, partial(_off, own))
     found = so.cad.from_shape(shape)[0].report
     assert found.area == right.area
     assert max(found.area_error, found.volume_error) < 1e-9
@@ -223,3 +228,25 @@ def test_the_check_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert '"file_unit": "mm"' in capsys.readouterr().out
     path.write_text("")
     assert main(["check", str(path)]) == 2
+
+
+def test_smooth_edges_along_which_normals_turn_need_no_cones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With the cones, their kinds and those of all others are told the same."""
+    turning, seen = edge_kinds._turning, []
+
+    def noted(*given: Any) -> bool:
+        seen.append(turning(*given))
+        return seen[-1]
+
+    for solid in (MAKERS["elbow"](), so.cad.from_shape(made.filleted_box())[0].solid):
+        boundary = solid.boundary
+        charts = {chart.number: chart for chart in face_charts(boundary)}
+        pieces = pieces_of(boundary, charts)
+        given = boundary, charts, pieces, columns_of(pieces)
+        monkeypatch.setattr(edge_kinds, "_turning", noted)
+        told = edge_kinds.proven_kinds(*given)
+        monkeypatch.setattr(edge_kinds, "_turning", lambda *given: False)
+        assert told == edge_kinds.proven_kinds(*given)
+    assert set(seen) == {True, False}

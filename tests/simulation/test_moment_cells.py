@@ -6,19 +6,23 @@ As cells of a boundary have them, integrands are analytic inside, up to powers a
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from standoff.bodies.moments.cells import Cell, evaluated, integrate, rule
+import standoff as so
+from standoff.bodies.moments.cells import BATCH_NODES, Cell, evaluated, integrate, rule
+from standoff.bodies.moments.face_cells import face_cells
+from standoff.bodies.moments.flux import COLUMNS, Frame
 
 Array = NDArray[np.float64]
 Plain = Callable[[Array, Array], Array]
 
 
 def cell(f: Plain, low: tuple[float, float] = (0, 0), high: tuple[float, float] = (1, 1)) -> Cell:
-    return Cell(lambda t, s: f(t[:, None], s[None, :])[..., None], low, high)
+    return Cell(lambda _, t, s: f(t[:, :, None], s[:, None, :])[..., None], low, high)
 
 
 @pytest.mark.parametrize("level", [3, 4, 5, 6])
@@ -39,9 +43,31 @@ def test_coarse_rules_stand_on_the_nodes_of_the_fine_one() -> None:
 
 
 def test_what_needs_nodes_along_one_parameter_is_seen_along_it() -> None:
-    sums = evaluated(cell(lambda t, s: np.cos(30 * t) + 0 * s))
-    assert sums.first[0] > 1e-3
-    assert sums.second[0] < 1e-15
+    sums = evaluated([cell(lambda t, s: np.cos(30 * t) + 0 * s)])
+    assert sums.first[0, 0] > 1e-3
+    assert sums.second[0, 0] < 1e-15
+
+
+def test_cells_evaluated_together_are_those_evaluated_alone() -> None:
+    """Of several functions and rules, in any order, more than a batch holds."""
+    body = so.shapes.cylinder(1.0, 2.0)
+    frame = Frame(np.array([0.1, 0.0, 0.2]), 3.0, 0.2)
+    strips = [part for k in range(body.n_faces) for part in face_cells(body, k, frame)]
+    other = Cell(
+        lambda _, t, s: np.cos(np.arange(COLUMNS) * t[:, :, None, None] * s[:, None, :, None])
+    )
+    cells = [
+        replace(part, levels=(4 + k % 2, 3 + k % 3), high=(part.high[0], 1.0 - 0.01 * k))
+        for k, part in enumerate([*strips, other, *strips] * 9)
+    ]
+    assert len({part.piece.chart.number for part in strips}) == 3
+    assert sum(part.nodes for part in cells) > 6 * BATCH_NODES
+    together = evaluated(cells)
+    for k, part in enumerate(cells):
+        alone = evaluated([part])
+        for name in ("values", "first", "second", "magnitude"):
+            one, by_itself = getattr(together, name)[k], getattr(alone, name)[0]
+            np.testing.assert_allclose(one, by_itself, 1e-12, 1e-14, err_msg=f"{k} {name}")
 
 
 HARD: dict[str, tuple[Plain, float]] = {
@@ -88,8 +114,8 @@ def test_halves_cover_a_cell_once() -> None:
 
 def test_columns_without_a_size_are_not_refined_for() -> None:
     wild = Cell(
-        lambda t, s: np.stack(
-            [np.ones((len(t), len(s))), np.cos(900 * np.add.outer(t, s))], axis=-1
+        lambda _, t, s: np.stack(
+            [np.ones((1, t.size, s.size)), np.cos(900 * np.add.outer(t[0], s[0]))[None]], axis=-1
         )
     )
     total = integrate([wild], lambda values: np.array([1.0, np.inf]), 1e-12, 100_000)

@@ -6,7 +6,6 @@ from bisect import bisect_left
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -121,7 +120,7 @@ def _stations(curve: Curve, first: float, last: float) -> Array:
     """Parameters in every span of a curve, so that no analytic piece lies between two samples."""
     inside = curve.spans()
     ends = np.concatenate([[first], inside[(inside > first) & (inside < last)], [last]])
-    return np.unique([np.linspace(a, b, SPAN_POINTS) for a, b in pairwise(ends)])
+    return np.unique(np.linspace(ends[:-1], ends[1:], SPAN_POINTS))
 
 
 def _vertex_geometry(

@@ -11,11 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.face_leaves import FaceChart, face_charts, leaves_of, quartered
+from standoff.bodies.face_leaves import FaceChart, Leaves, face_charts, leaves_of, quartered
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tolerances import CROSSING_STEP, LEAF_MARGIN, SAME_CROSSING
 from standoff.errors import BodyError
-from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import on_face
 
@@ -50,27 +49,44 @@ class Crossings:
 
     def __init__(self, boundary: PackedParts, faces: Sequence[int] | None = None) -> None:
         self.boundary = boundary
-        self.charts = {c.number: c for c in face_charts(boundary, faces)}
-        self.leaves = leaves_of(boundary, faces, LEAF_ANGLE)
-        low, high = self.leaves.bounds.low.min(axis=0), self.leaves.bounds.high.max(axis=0)
-        self.size = float(np.linalg.norm(high - low))
+        self.charts = face_charts(boundary, faces)
+        self._leaves: dict[int, Leaves] = {}
+        self._extents: dict[tuple[int, int], tuple[Array, Array]] = {}
+        self.near = 0.0
+        low, high = self._whole(np.eye(3))
+        size = float(np.linalg.norm(high.max(axis=1) - low.min(axis=1)))
+        self.near = SAME_CROSSING * (size + float(np.abs([low, high]).max()))
         self._known: dict[int, tuple[Array, Array, Array]] = {}
-        self.near = SAME_CROSSING * (self.size + float(np.abs([low, high]).max()))
 
-    def _extents(self, number: int) -> tuple[Array, Array, Array]:
-        """A direction's frame (3, 3), and the leaves' extents in it (3, n), slightly enlarged."""
+    def _whole(self, frame: Array) -> tuple[Array, Array]:
+        """The charts' extents in a frame, (3, n) each, slightly enlarged."""
+        found = []
+        for chart in self.charts:
+            low, high = chart.surface.extents(quartered(quartered(chart.rectangle[None])), frame)
+            found.append((low.min(axis=1), high.max(axis=1)))
+        low, high = np.moveaxis(np.array(found), 0, -1)
+        return low - self.near, high + self.near
+
+    def _ray(self, number: int) -> tuple[Array, Array, Array]:
+        """A direction's frame (3, 3), and the charts' extents in it."""
         if number not in self._known:
             direction = DIRECTIONS[number]
             across = np.cross(direction, np.eye(3)[int(np.abs(direction).argmin())])
             across = across / np.linalg.norm(across)
             frame = np.stack([direction, across, np.cross(direction, across)])
-            low, high = np.empty((2, 3, len(self.leaves)))
-            for key, chart in self.charts.items():
-                own = self.leaves.charts == key
-                rows = self.leaves.rectangles[own]
-                low[:, own], high[:, own] = chart.surface.extents(rows, frame)
-            self._known[number] = frame, low - self.near, high + self.near
+            self._known[number] = frame, *self._whole(frame)
         return self._known[number]
+
+    def _met_leaves(self, k: int, number: int, at: Array, frame: Array) -> Leaves:
+        """Those of a chart's leaves that a ray may meet; they are made once it meets the chart."""
+        if k not in self._leaves:
+            self._leaves[k] = leaves_of(self.boundary, self.charts[k], LEAF_ANGLE)
+        own = self._leaves[k]
+        if (k, number) not in self._extents:
+            low, high = self.charts[k].surface.extents(own.rectangles, frame)
+            self._extents[k, number] = low - self.near, high + self.near
+        met = _meets(at, *self._extents[k, number])
+        return Leaves(*(rows[met] for rows in own))
 
     def inside(self, point: Array) -> bool:
         """Is a point inside, or on a face?
@@ -82,7 +98,7 @@ class Crossings:
         """
         for grazing in (False, True):
             for number in range(len(DIRECTIONS)):
-                told = self._along(point, *self._extents(number), grazing)
+                told = self._along(point, number, grazing)
                 if told is not None:
                     return told
         raise BodyError(
@@ -90,19 +106,20 @@ class Crossings:
             "crossings alternate between out and in. Faces may cross each other or have gaps."
         )
 
-    def _along(
-        self, point: Array, frame: Array, low: Array, high: Array, grazing: bool
-    ) -> bool | None:
+    def _along(self, point: Array, number: int, grazing: bool) -> bool | None:
         """By one ray; None if it does not decide, or may graze a face and `grazing` is False."""
+        frame, *extents = self._ray(number)
         at = frame @ point
         hits: list[tuple[float, float]] = []
-        met = np.flatnonzero(_meets(at, low, high))
-        every = _steep(self.leaves.bounds[met], frame[0])
-        if not (grazing or every.all()):
+        met = [
+            (self.charts[k], self._met_leaves(int(k), number, at, frame))
+            for k in np.flatnonzero(_meets(at, *extents))
+        ]
+        every = [_steep(leaves.axes, leaves.angles, frame[0]) for _, leaves in met]
+        if not (grazing or all(steep.all() for steep in every)):
             return None
-        for key in np.unique(self.leaves.charts[met]):
-            chart, own = self.charts[int(key)], self.leaves.charts[met] == key
-            rows, steep = self.leaves.rectangles[met[own]], every[own]
+        for (chart, leaves), steep in zip(met, every, strict=True):
+            rows = leaves.rectangles
             for cross, part in ((self._crossings, rows[steep]), (self._grazed, rows[~steep])):
                 found = cross(chart, part, at, frame) if len(part) else []
                 if found is None:
@@ -139,7 +156,7 @@ class Crossings:
         """The same for rectangles that a ray may graze; None where it does."""
         hits: list[tuple[float, float]] = []
         for _ in range(MOST_QUARTERINGS):
-            steep = _steep(chart.surface.bounds(rows), frame[0])
+            steep = _steep(*chart.surface.normal_cones(rows), frame[0])
             found = self._crossings(chart, rows[steep], at, frame)
             if found is None:
                 return None
@@ -186,10 +203,10 @@ class Crossings:
         return (float(place[0]), float(place[1])) if inside else None
 
 
-def _steep(bounds: PatchBounds, direction: Array) -> NDArray[np.bool_]:
+def _steep(axes: Array, angles: Array, direction: Array) -> NDArray[np.bool_]:
     """(n,) rectangles over which the angle of surface and ray is proven above GRAZING."""
-    lean = np.minimum(np.abs(bounds.axis @ direction), 1.0)
-    return np.asarray(np.arcsin(lean) - bounds.angle > GRAZING)
+    lean = np.minimum(np.abs(axes @ direction), 1.0)
+    return np.asarray(np.arcsin(lean) - angles > GRAZING)
 
 
 def _meets(at: Array, low: Array, high: Array) -> NDArray[np.bool_]:

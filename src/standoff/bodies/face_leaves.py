@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,6 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import TILE, chart_row, surface_of
 from standoff.bodies.tolerances import BOX_REACH
 from standoff.geometry.bernstein import equal_segments
-from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
@@ -27,23 +27,13 @@ BOX_QUARTERINGS = 8
 MOST_QUARTERINGS = 7
 
 
-@dataclass(frozen=True, eq=False)
-class Leaves:
-    """n rectangles, each of one chart.
+class Leaves(NamedTuple):
+    """Rectangles (n, 4), rows (u0, u1, v0, v1), of which the face may cover only part, or nothing,
+    and cones of the normals x_u × x_v over each, axes (n, 3) and half angles (n,)."""
 
-    Attributes
-    ----------
-    charts : (n,) packed numbers.
-    rectangles : (n, 4) rows (u0, u1, v0, v1); the face may cover only part of one, or nothing.
-    bounds : of the surface over each.
-    """
-
-    charts: NDArray[np.int64]
     rectangles: Array
-    bounds: PatchBounds
-
-    def __len__(self) -> int:
-        return len(self.charts)
+    axes: Array
+    angles: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,27 +117,20 @@ def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> tuple[Array
     return pcurve_boxes(kind, matrix, np.linspace(first, last, parts + 1))
 
 
-def leaves_of(boundary: PackedParts, faces: Sequence[int] | None, widest: float) -> Leaves:
-    """Rectangles that cover the given faces. Over each the normals fit a cone of half angle
-    `widest`, radians, unless it was quartered MOST_QUARTERINGS times."""
-    numbers, rectangles, bounds = [], [], []
-    for chart in face_charts(boundary, faces):
-        rows = chart.rectangle[None]
-        for _ in range(MOST_QUARTERINGS):
+def leaves_of(boundary: PackedParts, chart: FaceChart, widest: float) -> Leaves:
+    """Rectangles that cover a chart's part of its face. Over each the normals fit a cone of half
+    angle `widest`, radians, unless it was quartered MOST_QUARTERINGS times."""
+    parts, rows = [], chart.rectangle[None]
+    for quartering in range(MOST_QUARTERINGS + 1):
+        if quartering < MOST_QUARTERINGS:
             rows = rows[_may_be_on(boundary, chart, rows)]
-            if not len(rows):
-                break
-            found = chart.surface.bounds(rows)
-            wide = found.angle > widest
-            numbers.append(np.full(int((~wide).sum()), chart.number))
-            rectangles.append(rows[~wide])
-            bounds.append(found[~wide])
-            rows = quartered(rows[wide])
-        else:
-            numbers.append(np.full(len(rows), chart.number))
-            rectangles.append(rows)
-            bounds.append(chart.surface.bounds(rows))
-    return Leaves(np.concatenate(numbers), np.concatenate(rectangles), PatchBounds.joined(bounds))
+        axes, angles = chart.surface.normal_cones(rows)
+        kept = (angles <= widest) | (quartering == MOST_QUARTERINGS)
+        parts.append((rows[kept], axes[kept], angles[kept]))
+        rows = quartered(rows[~kept])
+        if not len(rows):
+            break
+    return Leaves(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def grown_box(

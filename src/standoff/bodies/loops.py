@@ -225,8 +225,7 @@ def _within(loop: Loop, links: Array) -> bool:
     """Do most points of a loop lie inside the others, by the parity of a ray's crossings?"""
     u, v = loop.links[:, 0].T
     (a, b), (c, d) = links[:, 0].T, links[:, 1].T
-    spans = (b <= v[:, None]) != (d <= v[:, None])
-    with np.errstate(all="ignore"):
-        at = a + (v[:, None] - b) / (d - b) * (c - a)
-    crossed = (spans & (at > u[:, None])).sum(axis=1) % 2
+    k, m = np.nonzero((b <= v[:, None]) != (d <= v[:, None]))
+    at = a[m] + (v[k] - b[m]) / (d - b)[m] * (c - a)[m]
+    crossed = np.bincount(k[at > u[k]], minlength=len(u)) % 2
     return 2 * int(crossed.sum()) > len(u)

@@ -110,12 +110,12 @@ def is_rim(c: Coedge) -> bool:
 
 def _boxes(c: Coedge, first: float, last: float) -> tuple[Array, Array]:
     """(low, high), each (PARTS, 2), of (u, v) along equal parts of a coedge's range."""
+    points = c.pcurve.matrix
+    if c.pcurve.kind == L.BEZIER and (first, last) == (c.first, c.last):
+        return bezier_box(equal_segments(len(points) - 1, PARTS) @ points)
     ends = np.linspace(first, last, PARTS + 1)
     if c.pcurve.kind != L.BEZIER:
-        return pcurve_boxes(c.pcurve.kind, c.pcurve.matrix, ends)
-    points = c.pcurve.matrix
-    if (first, last) == (c.first, c.last):
-        return bezier_box(equal_segments(len(points) - 1, PARTS) @ points)
+        return pcurve_boxes(c.pcurve.kind, points, ends)
     shares = (ends - c.first) / (c.last - c.first)
     return bezier_box(segments(len(points) - 1, shares[:-1], shares[1:]) @ points)
 

@@ -223,7 +223,7 @@ class _Maker:
             made = [(number, edge, way, None) for number, edge, way, _ in made]
             self.pieces.recognised[on.kind] += 1
         elif on.kind == "spline" and not any(BRep_Tool.Degenerated_s(e) for e in uses):
-            on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made]))
+            on = grown(on, *extent([(edge, flat) for _, edge, _, flat in made], on))
         sense = None
         if on.kind == "sphere":
             charts, trims = sphere_charts(

@@ -8,7 +8,6 @@ bounded in ``miss_bounds``.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -170,17 +169,26 @@ def feet(on: Carrier, points: Array, near: Array) -> Array:
     return np.asarray(best)
 
 
-def extent(edges: Sequence[tuple[Converted, Any]]) -> tuple[Array, Array]:
+def extent(edges: Sequence[tuple[Converted, Any]], on: Carrier) -> tuple[Array, Array]:
     """The lowest and highest parameters, (2,) each, that the file's trimming curves of edges have
-    at samples."""
-    rows = [
-        coordinates(flat.Value(t))
-        for edge, flat in edges
-        if flat is not None and edge.affine
-        for t in edge.own(np.linspace(edge.curve.first, edge.curve.last, EXTENT_POINTS)).tolist()
-    ]
-    uv = np.reshape(rows, (-1, 2))
+    at samples; of splines whose control points lie within the surface's domain, at these."""
+    low, high = limits_of(on)
+    rows = [np.zeros((0, 2))]
+    for edge, flat in edges:
+        if flat is not None and edge.affine:
+            poles = np.reshape(_poles(basis_of(flat)), (-1, 2))
+            if not len(poles) or not np.all((low <= poles) & (poles <= high)):
+                ts = edge.own(np.linspace(edge.curve.first, edge.curve.last, EXTENT_POINTS))
+                poles = np.array([coordinates(flat.Value(t)) for t in ts.tolist()])
+            rows.append(poles)
+    uv = np.concatenate(rows)
     return uv.min(axis=0, initial=np.inf), uv.max(axis=0, initial=-np.inf)
+
+
+def _poles(flat: Any) -> list[Array]:
+    if flat.DynamicType().Name() not in ("Geom2d_BSplineCurve", "Geom2d_BezierCurve"):
+        return []
+    return [coordinates(flat.Pole(k)) for k in range(1, flat.NbPoles() + 1)]
 
 
 def limits_of(on: Carrier) -> tuple[Array, Array]:
@@ -317,7 +325,7 @@ def fit(
     breaks = np.array([curve.first, curve.last])
     for halving in range(FIT_HALVINGS + 1):
         found = _fitted(places, breaks, on, near)
-        ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(breaks)])
+        ts = np.linspace(breaks[:-1], breaks[1:], COMPARED, axis=1).ravel()
         off = misses(found, curve, on.surface, ts).reshape(-1, COMPARED).max(axis=1)
         if halving == FIT_HALVINGS or len(breaks) > MOST_SPANS or off.max() <= enough:
             break
@@ -332,8 +340,8 @@ def fit(
 def _crossed(places: Inverse, curve: Curve, surface: Surface) -> list[float]:
     """Where a curve's parameters are not smooth: at its own knots if they are few, as with many it
     is smooth enough, and where it crosses those of a surface."""
-    ts = np.unique([np.linspace(a, b, COMPARED) for a, b in pairwise(curve.spans())])
     own = curve.spans()
+    ts = np.unique(np.linspace(own[:-1], own[1:], COMPARED))
     found = own[1:-1].tolist() if len(own) <= FEW_SPANS else []
     uv = places(ts)
     brackets: list[Array] = []
@@ -395,5 +403,5 @@ def miss(pcurve: Pcurve, curve: Curve, surface: Surface) -> float:
     if isinstance(pcurve, NurbsPcurve):
         inside = (curve.first < pcurve.knots) & (pcurve.knots < curve.last)
         ends = np.unique(np.concatenate([ends, pcurve.knots[inside]]))
-    ts = np.concatenate([np.linspace(a, b, COMPARED) for a, b in pairwise(ends)])
+    ts = np.linspace(ends[:-1], ends[1:], COMPARED, axis=1).ravel()
     return float(misses(pcurve, curve, surface, ts).max())

@@ -82,15 +82,17 @@ def unscaled(c: Array) -> Array:
 
 def convolve(a: Array, b: Array) -> Array:
     """The product of two scaled polynomials, component by component (they broadcast)."""
-    rows, columns = b.shape[-2], b.shape[-1]
     shape = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
-    whole = (*shape, a.shape[-2] + rows - 1, a.shape[-1] + columns - 1)
+    # the components last: these are many, the coefficients few
+    a = np.moveaxis(a, (-2, -1), (0, 1)).copy()
+    a = a.reshape(*a.shape[:2], *(1,) * (len(shape) + 2 - a.ndim), *a.shape[2:])
+    b = np.moveaxis(b, (-2, -1), (0, 1)).copy()
+    rows, columns = a.shape[:2]
+    whole = (rows + b.shape[0] - 1, columns + b.shape[1] - 1, *shape)
     out = np.zeros(whole, dtype=np.result_type(a, b))
-    for i in range(rows):
-        for j in range(columns):
-            part = a * b[..., i : i + 1, j : j + 1]
-            out[..., i : i + a.shape[-2], j : j + a.shape[-1]] += part
-    return out
+    for i, j in np.ndindex(b.shape[:2]):
+        out[i : i + rows, j : j + columns] += a * b[i, j]
+    return np.moveaxis(out, (0, 1), (-2, -1))
 
 
 def product(a: Array, b: Array) -> Array:

@@ -52,11 +52,15 @@ class Curve(KeepsReadOnly):
     def point(self, t: float) -> Array:
         return self.jet(t)[0]
 
-    def points(self, ts: Array) -> Array:
-        """(n, 3) points at (n,) parameters, body frame."""
+    def jets(self, ts: Array) -> Array:
+        """(n, 3, 3) rows (x, x_t, x_tt) at (n,) parameters, body frame."""
         found = np.empty((len(ts), 9))
         curve_jets(self.data, self.kind, 0, np.ascontiguousarray(ts), found)
-        return found[:, :3]
+        return found.reshape(-1, 3, 3)
+
+    def points(self, ts: Array) -> Array:
+        """(n, 3) points at (n,) parameters, body frame."""
+        return self.jets(ts)[:, 0]
 
     @property
     def closed(self) -> bool:

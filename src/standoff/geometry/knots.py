@@ -11,6 +11,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from typing import Any
 
@@ -42,10 +43,12 @@ class KnotVector(KeepsReadOnly):
         """The interval on which the basis functions sum to one."""
         return float(self.knots[self.degree]), float(self.knots[self.count])
 
-    @property
+    @cached_property
     def breaks(self) -> Array:
         """Distinct knots from one end of the domain to the other, (spans + 1,)."""
-        return np.unique(self.knots[self.degree : self.count + 1])
+        found = np.unique(self.knots[self.degree : self.count + 1])
+        found.flags.writeable = False
+        return found
 
     def multiplicity(self, knot: float) -> int:
         return int(np.count_nonzero(self.knots == knot))

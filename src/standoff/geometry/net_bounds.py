@@ -73,17 +73,17 @@ class CutNets:
             return interval(np.zeros((4, len(h), 1, 1)))
         scale: Array = np.ones(len(h))
         for axis, times in ((1, along_u), (2, along_v)):
+            later = (slice(None),) * axis + (slice(1, None),)
+            first = (slice(None),) * axis + (slice(-1),)
             for _ in range(times):
                 degree = h.shape[axis] - 1
-                h = degree * np.diff(h, axis=axis)
                 # the difference of equal points is exactly zero
-                first, last = (np.delete(off, k, axis) for k in (0, -1))
-                off = degree * (first + last) + 2.0 * EPS * np.abs(h)
+                h = degree * (h[later] - h[first])
+                off = degree * (off[later] + off[first]) + 2.0 * EPS * np.abs(h)
                 scale = scale / self.widths[axis - 1]
         rows, columns = self._part(0, h.shape[1] - 1), self._part(1, h.shape[2] - 1)
-        part, size, off = (
-            _cut(c, rows, columns) * scale[:, None, None] for c in (h, np.abs(h), off)
-        )
+        every = np.concatenate([h, np.abs(h), off], axis=3)
+        part, size, off = np.split(_cut(every, rows, columns) * scale[:, None, None], 3)
         spare = NET_ROUNDING * size + 2.0 * off
         return Interval(part - spare, part + spare)
 
@@ -199,8 +199,8 @@ def _times(a: Interval, b: Interval) -> Interval:
     """The product of polynomials by Bernstein coefficients, (..., n, i, j)."""
     middle = product(a.middle, b.middle)
     # |a b - a' b'| <= |a'| |b - b'| + |a - a'| |b|, and each sum is rounded
-    off = product(np.abs(a.middle), b.radius) + product(a.radius, b.magnitude)
-    off = off + NET_ROUNDING * product(np.abs(a.middle), np.abs(b.middle))
+    spare = b.radius + NET_ROUNDING * np.abs(b.middle)
+    off = product(np.abs(a.middle), spare) + product(a.radius, b.magnitude)
     return Interval(middle - 2.0 * off, middle + 2.0 * off)
 
 

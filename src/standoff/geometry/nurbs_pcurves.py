@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import scipy
@@ -107,9 +108,18 @@ class NurbsPcurve(Pcurve):
         return found
 
     def pieces(self, first: float, last: float) -> list[tuple[Pcurve, float, float]]:
-        within = [(s, max(first, s.first), min(last, s.last)) for s in self.spans]
-        parts = [_part(span, a, b) for span, a, b in within if a < b]
-        return [(p, p.first, p.last) for p in _turning_pieces(parts)]
+        known = KNOWN_PIECES.setdefault(self, {})
+        if (first, last) not in known:
+            within = [(s, max(first, s.first), min(last, s.last)) for s in self.spans]
+            parts = [_part(span, a, b) for span, a, b in within if a < b]
+            known[first, last] = [(p, p.first, p.last) for p in _turning_pieces(parts)]
+        return known[first, last]
+
+
+KNOWN_PIECES: WeakKeyDictionary[
+    NurbsPcurve, dict[tuple[float, float], list[tuple[Pcurve, float, float]]]
+] = WeakKeyDictionary()
+"""Pieces of curves, which who makes one and who packs it both ask for."""
 
 
 def _part(span: BezierPcurve, a: float, b: float) -> BezierPcurve:
@@ -160,8 +170,11 @@ def _sampled(parts: list[BezierPcurve], ends: Array, count: int) -> tuple[Array,
 
 
 def _inflection(part: BezierPcurve, before: float, after: float) -> float:
+    block = part._block()
+
     def bend(t: float) -> float:
-        return float(np.linalg.det(np.array(part.homogeneous(t))))
+        (a, b, c), (d, e, f), (g, h, k) = pcurve_jet(block, L.BEZIER, 2, t)
+        return float(a * (e * k - f * h) + b * (f * g - d * k) + c * (d * h - e * g))
 
     return float(scipy.optimize.brentq(bend, before, after, xtol=INFLECTION))
 

@@ -21,9 +21,8 @@ from standoff.geometry.intervals import Interval, interval, sqrt
 from standoff.geometry.tolerances import CONE_ROUNDING, VANISHED
 from standoff.geometry.validation import Array
 from standoff.geometry.vectors import crosses
+from standoff.kernels.entries.queries import centres
 
-# Steps of a cone's axis towards the vector farthest from it.
-AXIS_STEPS = 40
 UNKNOWN = float(np.pi)
 UP = np.array([0.0, 0.0, 1.0])[:, None, None]
 
@@ -120,30 +119,13 @@ def cone_round(vectors: Interval) -> tuple[Array, Array]:
     lost &= ~none
     first = np.take_along_axis(units, (none | lost).argmin(axis=0)[None, None], axis=1)
     units = np.where(none | lost, np.where(np.isfinite(first), first, UP), units)
-    axis = _amid(units)
+    axis = np.empty((units.shape[2], 3))
+    centres(np.ascontiguousarray(np.moveaxis(units, 0, 2).swapaxes(0, 1)), axis)
     with np.errstate(all="ignore"):
         lean = np.where(lost | none, 0.0, off / size)
         turned = np.arcsin(np.minimum(lean, 1.0))
-    reach = between(np.broadcast_to(axis[:, None], units.shape), units) + turned + CONE_ROUNDING
-    return axis.T, _known(np.where(lost.any(axis=0), UNKNOWN, reach.max(axis=0)))
-
-
-def _amid(units: Array) -> Array:
-    """(3, n) axes of nearly smallest cones around unit vectors (3, k, n) (Badoiu and Clarkson)."""
-    axis = units.sum(axis=1)
-    best, most = axis, np.full(units.shape[2], -np.inf)
-    columns = np.arange(units.shape[2])
-    for step in range(AXIS_STEPS if units.shape[1] > 2 else 1):
-        size = np.linalg.norm(axis, axis=0)
-        axis = np.where(size > 0.0, axis, units[:, 0])
-        axis = axis / np.linalg.norm(axis, axis=0)
-        cosines = (axis[:, None] * units).sum(axis=0)
-        worst = cosines.argmin(axis=0)
-        better = cosines[worst, columns] > most
-        best = np.where(better, axis, best)
-        most = np.where(better, cosines[worst, columns], most)
-        axis = axis + (units[:, worst, columns] - axis) / (step + 2.0)
-    return np.asarray(best / np.linalg.norm(best, axis=0))
+    reach = between(axis.T[:, None], units) + turned + CONE_ROUNDING
+    return axis, _known(np.where(lost.any(axis=0), UNKNOWN, reach.max(axis=0)))
 
 
 def normal_curvatures(

@@ -121,9 +121,9 @@ class SurfaceCurve(Curve):
         xtt = pt[0] ** 2 * xuu + 2.0 * pt[0] * pt[1] * xuv + pt[1] ** 2 * xvv
         return x, pt[0] * xu + pt[1] * xv, xtt + ptt[0] * xu + ptt[1] * xv
 
-    def points(self, ts: Array) -> Array:
-        """(n, 3) points at (n,) parameters, body frame."""
-        return np.array([self.jet(float(t))[0] for t in ts])
+    def jets(self, ts: Array) -> Array:
+        """(n, 3, 3) rows (x, x_t, x_tt) at (n,) parameters, body frame."""
+        return np.reshape([self.jet(float(t)) for t in ts], (-1, 3, 3))
 
     @property
     def closed(self) -> bool:

@@ -7,11 +7,13 @@ two costs nothing (J. Waldvogel, BIT Numerical Mathematics 46, 2006, 195-202).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from standoff.bodies.moments.tolerances import LEAST_SHARE
 from standoff.geometry.validation import Array
@@ -29,8 +31,12 @@ NARROWEST_CELL = 2.0**-40
 # Points that a boundary of many cells may use for each, some ten times as many as at first.
 CELL_NODES = 500
 
-Integrand = Callable[[Array, Array], Array]
-"""Parameters (m,) and (n,) to values (m, n, columns) on their grid."""
+# About as many nodes are evaluated at once as the caches hold the values of.
+BATCH_NODES = 4096
+
+Integrand = Callable[[Sequence[Any], Array, Array], Array]
+"""Pieces, and parameters (k, m) and (k, n) of k cells, to values (k, m, n, columns) on their
+grids."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +46,15 @@ class Cell:
     Attributes
     ----------
     function : Integrand
+        Cells with the same function and levels are evaluated together.
     low, high : pairs of float
         Its corners.
     levels : pair of int
         2^level - 1 nodes along each parameter.
     owner : int
         The face of which it is a part.
+    piece : any
+        What the function is to know of this cell.
     """
 
     function: Integrand
@@ -53,11 +62,15 @@ class Cell:
     high: tuple[float, float] = (1.0, 1.0)
     levels: tuple[int, int] = (FIRST_LEVEL, FIRST_LEVEL)
     owner: int = 0
+    piece: Any = None
+
+    @property
+    def nodes(self) -> int:
+        return int((2 ** self.levels[0] - 1) * (2 ** self.levels[1] - 1))
 
 
-@dataclass(frozen=True)
-class Sums:
-    """A cell's integrals (columns,).
+class Sums(NamedTuple):
+    """The integrals of cells, (cells, columns).
 
     Attributes
     ----------
@@ -75,6 +88,9 @@ class Sums:
     @property
     def remainder(self) -> Array:
         return self.first + self.second
+
+    def only(self, which: NDArray[np.int_]) -> Sums:
+        return Sums(*(rows[which] for rows in self))
 
 
 @dataclass(frozen=True)
@@ -119,30 +135,51 @@ def _weights(angles: Array) -> Array:
     return np.asarray(2.0 * np.sin(angles) * series / (len(angles) + 1))
 
 
-def evaluated(cell: Cell) -> Sums:
-    """A cell's integrals by its rule, and their estimated errors along each parameter."""
-    spans = [b - a for a, b in zip(cell.low, cell.high, strict=True)]
-    rules = [rule(level) for level in cell.levels]
-    t, s = (a + span * r[0] for a, span, r in zip(cell.low, spans, rules, strict=True))
-    values = cell.function(t, s) * (spans[0] * spans[1])
+def evaluated(cells: Sequence[Cell]) -> Sums:
+    """Integrals of cells by their rules, and their estimated errors along each parameter."""
+    alike: dict[tuple[Integrand, tuple[int, int]], list[int]] = {}
+    for k, cell in enumerate(cells):
+        alike.setdefault((cell.function, cell.levels), []).append(k)
+    order, parts = [], []
+    for numbers in alike.values():
+        size = max(BATCH_NODES // cells[numbers[0]].nodes, 1)
+        for first in range(0, len(numbers), size):
+            batch = numbers[first : first + size]
+            order += batch
+            parts.append(_together([cells[k] for k in batch]))
+    return _joined(parts).only(np.argsort(order))
+
+
+def _joined(parts: Sequence[Sums]) -> Sums:
+    return Sums(*map(np.concatenate, zip(*parts, strict=True)))
+
+
+def _together(cells: Sequence[Cell]) -> Sums:
+    """The same for cells with the same function and levels."""
+    low, high = (np.array([getattr(cell, end) for cell in cells]) for end in ("low", "high"))
+    spans = high - low
+    rules = [rule(level) for level in cells[0].levels]
+    t, s = (low[:, i, None] + spans[:, i, None] * rules[i][0] for i in (0, 1))
+    values = cells[0].function([cell.piece for cell in cells], t, s)
+    values = values * spans.prod(axis=1)[:, None, None, None]
     (_, along), (_, across) = rules
     by_first = along @ (across[0] @ values)
-    by_second = across @ (along[0] @ values.swapaxes(0, 1))
+    by_second = across @ (along[0] @ values.swapaxes(1, 2))
     magnitude = along[0] @ (across[0] @ np.abs(values))
-    return Sums(by_first[0], _remainder(by_first), _remainder(by_second), magnitude)
+    return Sums(by_first[:, 0], _remainders(by_first), _remainders(by_second), magnitude)
 
 
-def _remainder(sums: Array) -> Array:
-    """The estimated error of the finest of three rules, (3, columns).
+def _remainders(sums: Array) -> Array:
+    """The estimated errors of the finest of three rules, (cells, 3, columns).
 
-    It is the last difference, times its ratio to the previous difference, times SAFETY: more than
-    all later differences together if they keep decreasing at this rate. The ratio counts as at
+    They are the last difference, times its ratio to the previous difference, times SAFETY: more
+    than all later differences together if they keep decreasing at this rate. The ratio counts as at
     least LEAST_SHARE, in case two rules agree by chance.
     """
-    last, before = np.abs(sums[0] - sums[1]), np.abs(sums[1] - sums[2])
-    size, previous = float(np.linalg.norm(last)), float(np.linalg.norm(before))
-    share = SAFETY * size / previous if previous > 0.0 else 1.0
-    return np.asarray(min(max(share, LEAST_SHARE), 1.0) * last)
+    last, before = np.abs(sums[:, 0] - sums[:, 1]), np.abs(sums[:, 1] - sums[:, 2])
+    size, previous = (np.linalg.norm(rows, axis=1) for rows in (last, before))
+    share = np.divide(SAFETY * size, previous, out=np.ones_like(size), where=previous > 0.0)
+    return np.asarray(np.clip(share, LEAST_SHARE, 1.0)[:, None] * last)
 
 
 def integrate(
@@ -163,47 +200,48 @@ def integrate(
         What is reached by then is the answer, and its remainder says how accurate it is.
     """
     most = max(most, CELL_NODES * len(cells))
-    found = [(cell, evaluated(cell)) for cell in cells]
-    nodes = sum(_count(cell) for cell in cells)
+    sums = evaluated(cells)
+    nodes = sum(cell.nodes for cell in cells)
     while nodes < most:
-        unit = 1.0 / scale(np.sum([sums.values for _, sums in found], axis=0))
-        costs = np.array([_excess(cell, sums, unit) for cell, sums in found])
+        unit = 1.0 / scale(sums.values.sum(axis=0))
+        costs = _excesses(cells, sums, unit)
         if costs.sum() <= tolerance:
             break
-        due = costs > 0.5 * tolerance / len(found)
-        finer = [part for k in np.flatnonzero(due) for part in _refined(*found[k], unit)]
-        nodes += sum(_count(cell) for cell in finer)
-        kept = [found[k] for k in np.flatnonzero(~due)]
-        found = kept + [(cell, evaluated(cell)) for cell in finer]
-    of: dict[int, tuple[Array, Array]] = {}
-    for cell, sums in found:
-        values, remainder = of.get(cell.owner, (0.0, 0.0))
-        of[cell.owner] = values + sums.values, remainder + sums.remainder
+        due = costs > 0.5 * tolerance / len(cells)
+        needs = np.column_stack([(one * unit).max(axis=1) for one in (sums.first, sums.second)])
+        finer = [part for k in np.flatnonzero(due) for part in _refined(cells[k], *needs[k])]
+        nodes += sum(cell.nodes for cell in finer)
+        kept = np.flatnonzero(~due)
+        cells = [cells[k] for k in kept] + finer
+        sums = _joined([sums.only(kept), evaluated(finer)])
     return Total(
-        np.sum([sums.values for _, sums in found], axis=0),
-        np.sum([sums.remainder for _, sums in found], axis=0),
-        np.sum([sums.magnitude for _, sums in found], axis=0),
+        sums.values.sum(axis=0),
+        sums.remainder.sum(axis=0),
+        sums.magnitude.sum(axis=0),
         nodes,
-        of,
+        _owned(cells, sums),
     )
 
 
-def _count(cell: Cell) -> int:
-    return int((2 ** cell.levels[0] - 1) * (2 ** cell.levels[1] - 1))
+def _owned(cells: Sequence[Cell], sums: Sums) -> dict[int, tuple[Array, Array]]:
+    owners, numbers = np.unique([cell.owner for cell in cells], return_inverse=True)
+    found = np.zeros((2, len(owners), sums.values.shape[1]))
+    for k, rows in enumerate((sums.values, sums.remainder)):
+        np.add.at(found[k], numbers, rows)
+    return {owner: (found[0, i], found[1, i]) for i, owner in enumerate(owners.tolist())}
 
 
-def _excess(cell: Cell, sums: Sums, unit: Array) -> float:
-    """The greatest relative error of a cell; 0 if it is roundoff or the cell cannot be halved."""
-    spans = [b - a for a, b in zip(cell.low, cell.high, strict=True)]
-    if min(spans) < NARROWEST_CELL:
-        return 0.0
+def _excesses(cells: Sequence[Cell], sums: Sums, unit: Array) -> Array:
+    """Of each cell the greatest relative error; 0 if it is roundoff or the cell cannot be
+    halved."""
+    low, high = (np.array([getattr(cell, end) for cell in cells]) for end in ("low", "high"))
     rounding = ROUNDINGS * np.finfo(float).eps * sums.magnitude
-    return float((np.maximum(sums.remainder - rounding, 0.0) * unit).max())
+    errors = (np.maximum(sums.remainder - rounding, 0.0) * unit).max(axis=1)
+    return np.where((high - low).min(axis=1) < NARROWEST_CELL, 0.0, errors)
 
 
-def _refined(cell: Cell, sums: Sums, unit: Array) -> list[Cell]:
+def _refined(cell: Cell, *needs: float) -> list[Cell]:
     """More nodes along the parameter that needs them; after the last rule, two halves."""
-    needs = [float((one * unit).max()) for one in (sums.first, sums.second)]
     # both, if neither is much better than the other
     axes = [k for k in (0, 1) if needs[k] >= 0.1 * max(needs)]
     low, high, levels = cell.low, cell.high, list(cell.levels)

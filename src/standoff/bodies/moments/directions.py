@@ -20,7 +20,6 @@ from standoff.geometry.curves import Curve
 from standoff.geometry.quadrics import sphere_atlas
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
-from standoff.kernels.entries.queries import surface_jet
 
 OverSphere = Callable[[Array], Array]
 """Unit vectors (..., 3) to values (..., columns)."""
@@ -57,12 +56,11 @@ _CHARTS = sphere_atlas(np.eye(3), np.zeros(3))
 
 
 def _square(chart: Surface, values: OverSphere) -> Integrand:
-    def integrand(t: Array, s: Array) -> Array:
-        u, v = np.tan(t), np.tan(s)
-        spots = [(a, b) for a in u.tolist() for b in v.tolist()]
-        y = np.array([surface_jet(chart.reals, chart.kind, 0, a, b)[0] for a, b in spots])
-        areas = np.outer(1.0 + u * u, 1.0 + v * v) * (1.0 + np.add.outer(u * u, v * v)) ** -1.5
-        return np.asarray(areas[..., None] * values(y.reshape(len(u), len(v), 3)))
+    def integrand(_: Sequence[None], t: Array, s: Array) -> Array:
+        u, v = np.broadcast_arrays(np.tan(t)[:, :, None], np.tan(s)[:, None, :])
+        y = chart.points(np.column_stack([u.ravel(), v.ravel()])).reshape(*u.shape, 3)
+        areas = (1.0 + u * u) * (1.0 + v * v) * (1.0 + u * u + v * v) ** -1.5
+        return np.asarray(areas[..., None] * values(y))
 
     return integrand
 
@@ -75,17 +73,18 @@ def part_cells(arcs: Sequence[Arc], start: Array, values: OverSphere) -> list[Ce
 def _sector(arc: Arc, start: Array, values: OverSphere) -> Integrand:
     """Over a signed triangle between the start and an arc, parametrised along and towards it."""
 
-    def integrand(t: Array, s: Array) -> Array:
-        y, dy = arc.piece(t)
+    def integrand(_: Sequence[None], t: Array, s: Array) -> Array:
+        y, dy = arc.piece(t.ravel())
         across = np.cross(start, y)
         sine = np.linalg.norm(across, axis=1)
         angle = np.arctan2(sine, y @ start)[:, None]
         safe = np.where(sine > 0.0, sine, 1.0)[:, None]
         aside = (y - np.cos(angle) * start) / safe
         turn = arc.sign * (across * dy).sum(axis=1)[:, None] / safe**2
-        ways = angle * s
+        ways = angle * np.repeat(s, t.shape[1], axis=0)
         spots = np.cos(ways)[..., None] * start + np.sin(ways)[..., None] * aside[:, None]
-        return np.asarray((turn * angle * np.sin(ways))[..., None] * values(spots))
+        found = (turn * angle * np.sin(ways))[..., None] * values(spots)
+        return np.asarray(found.reshape(*t.shape, s.shape[1], -1))
 
     return integrand
 

@@ -7,9 +7,11 @@ curve. Lines of constant u, like the seams of a band that goes once around, give
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from functools import cached_property
+from itertools import groupby, pairwise
+from typing import TypeVar
 
 import numpy as np
 import scipy
@@ -33,6 +35,8 @@ SAMPLES = 65
 # suffice.
 SMOOTH_POWER = 6.0
 
+Value = TypeVar("Value")
+
 
 @dataclass(frozen=True, eq=False)
 class Chart:
@@ -44,24 +48,17 @@ class Chart:
 
     def flux(self, u: Array, v: Array) -> Array:
         """The integrand of `flux` times du dv: (..., columns) for u and v of the same shape."""
-        reals, row = self.body.reals, chart_row(self.body, self.number)
-        kind, at = int(row[L.CHART_KIND]), int(row[L.CHART_REALS])
-        jets = np.empty((u.size, 18))
-        surface_jets(reals, kind, at, np.column_stack([u.ravel(), v.ravel()]), jets)
-        jets = jets.reshape(*u.shape, 6, 3)
-        x, xu, xv, xuu, xuv, xvv = (jets[..., k, :] for k in range(6))
-        outward, radius = float(reals[at + L.OUTWARD]), self.frame.radius
-        areas = outward * crosses(xu, xv)
-        if radius > 0.0:
-            slopes = (
-                outward * (crosses(xuu, xv) + crosses(xu, xuv)),
-                outward * (crosses(xuv, xv) + crosses(xu, xvv)),
-            )
-            normals, moved = offset_areas((xu, xv), areas, slopes, radius)
-            x, areas = x + radius * normals, outward * moved
-        return flux(self.frame, x, areas)
+        return _surface_flux(self.frame, self.jets(np.stack([u, v], axis=-1)), self.outward)
 
-    @property
+    def jets(self, parameters: Array) -> Array:
+        """The surface's jets (..., 6, 3) at parameters (..., 2)."""
+        row = chart_row(self.body, self.number)
+        kind, at = int(row[L.CHART_KIND]), int(row[L.CHART_REALS])
+        jets = np.empty((parameters.size // 2, 18))
+        surface_jets(self.body.reals, kind, at, parameters.reshape(-1, 2), jets)
+        return jets.reshape(*parameters.shape[:-1], 6, 3)
+
+    @cached_property
     def outward(self) -> float:
         """+1 if x_u × x_v points outward, else -1."""
         row = chart_row(self.body, self.number)
@@ -77,6 +74,20 @@ class Chart:
         row = chart_row(self.body, self.number)
         first = int(row[L.CHART_COEDGE])
         return range(first, first + int(row[L.CHART_N_COEDGES]))
+
+
+def _surface_flux(frame: Frame, jets: Array, outward: float | Array) -> Array:
+    """The integrand of `flux` times du dv for jets (..., 6, 3) and signs (...) of x_u × x_v."""
+    x, xu, xv, xuu, xuv, xvv = (jets[..., k, :] for k in range(6))
+    areas = outward * crosses(xu, xv)
+    if frame.radius > 0.0:
+        slopes = (
+            outward * (crosses(xuu, xv) + crosses(xu, xuv)),
+            outward * (crosses(xuv, xv) + crosses(xu, xvv)),
+        )
+        normals, moved = offset_areas((xu, xv), areas, slopes, frame.radius)
+        x, areas = x + frame.radius * normals, outward * moved
+    return flux(frame, x, areas)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,15 +133,15 @@ def chart_cells(chart: Chart) -> list[Cell]:
     samples = [curve.samples() for curve in curves]
     start = _start(samples)
     breaks = chart.surface.analytic_breaks()
-    cells = []
+    strips, cells = Strips(chart.frame), []
     for curve, (u, v, du, _) in zip(curves, samples, strict=True):
         if np.abs(du).max() == 0.0 or (np.abs(v - start).max() == 0.0):
             continue
         for first, last in pairwise(_cuts(curve, u, v, breaks)):
             level = float(curve.parameters(np.array([0.5 * (first + last)]))[1, 0])
             for low, high in _layers(start, level, breaks[1]):
-                strip = _strip(chart, curve, low, high)
-                cells.append(Cell(strip, (first, 0.0), (last, 1.0)))
+                strip = Strip(chart, curve, low, high)
+                cells.append(Cell(strips, (first, 0.0), (last, 1.0), piece=strip))
     return cells
 
 
@@ -147,6 +158,8 @@ def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array])
     times = np.linspace(first, last, SAMPLES)
     cuts = [first, last]
     for axis, values in enumerate((u, v)):
+        if not len(breaks[axis]):
+            continue
         away = values[:, None] - breaks[axis]
         for k, m in np.argwhere(away[:-1] * away[1:] < 0.0):
 
@@ -158,23 +171,52 @@ def _cuts(curve: TrimmingCurve, u: Array, v: Array, breaks: tuple[Array, Array])
     return [float(t) for t in np.unique(cuts)]
 
 
-def _layers(start: float, level: float, breaks: Array) -> Iterator[tuple[float, float | None]]:
+def _layers(start: float, level: float, breaks: Array) -> Iterator[tuple[float, float]]:
     """The range of v from the start to a trimming curve near a level, cut at breaks: (from, to),
-    where to is None for the curve itself."""
+    where to is nan for the curve itself."""
     between = breaks[(breaks > min(start, level)) & (breaks < max(start, level))]
     stops = [start, *(between if level > start else between[::-1])]
     yield from ((float(a), float(b)) for a, b in pairwise(stops))
-    yield float(stops[-1]), None
+    yield float(stops[-1]), np.nan
 
 
-def _strip(chart: Chart, curve: TrimmingCurve, low: float, high: float | None) -> Integrand:
-    def values(t: Array, s: Array) -> Array:
-        u, v, du, _ = curve.parameters(t)
-        width = (v if high is None else np.full_like(v, high)) - low
-        inner = chart.flux(np.repeat(u[:, None], len(s), axis=1), low + np.outer(width, s))
-        return np.asarray(-curve.side * (du * width)[:, None, None] * inner)
+@dataclass(frozen=True, eq=False)
+class Strip:
+    """What lies between low and a trimming curve, or high unless it is nan."""
 
-    return values
+    chart: Chart
+    curve: TrimmingCurve
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Strips:
+    """The integrand over strips of any faces, all at once."""
+
+    frame: Frame
+
+    def __call__(self, strips: Sequence[Strip], t: Array, s: Array) -> Array:
+        rows = [(a.low, a.high, a.curve.side, a.chart.outward) for a in strips]
+        low, high, side, outward = np.array(rows).T[..., None]
+        runs = _runs([strip.curve for strip in strips])
+        places = [c.parameters(t[k].ravel()).reshape(4, -1, t.shape[1]) for c, k in runs]
+        u, v, du, _ = np.concatenate(places, axis=1)
+        width = np.where(np.isnan(high), v, high) - low
+        across = low[..., None] + width[..., None] * s[:, None]
+        uv = np.stack([np.broadcast_to(u[..., None], across.shape), across], axis=-1)
+        jets = np.concatenate([c.jets(uv[k]) for c, k in _runs([strip.chart for strip in strips])])
+        inner = _surface_flux(self.frame, jets, outward[..., None, None])
+        return np.asarray((-side * du * width)[..., None, None] * inner)
+
+
+def _runs(values: Sequence[Value]) -> Iterator[tuple[Value, slice]]:
+    """Values that follow each other, and where they are."""
+    first = 0
+    for value, run in groupby(values):
+        last = first + sum(1 for _ in run)
+        yield value, slice(first, last)
+        first = last
 
 
 def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
@@ -227,10 +269,12 @@ def _triangle(chart: Chart, su: float, sv: float, swap: bool) -> Integrand:
     powers = [m for m in chart.surface.data[:2] if m % 2.0 != 0.0]
     p = max(float(np.ceil(SMOOTH_POWER / (1.0 + min(powers, default=SMOOTH_POWER)))), 1.0)
 
-    def values(t: Array, s: Array) -> Array:
-        r, w = t[:, None] ** p, s[None, :] ** p
-        rate = p * t[:, None] ** (p - 1.0) * p * s[None, :] ** (p - 1.0) * r
-        far, near = np.broadcast_to(r, (len(t), len(s))), r * w
+    def values(_: Sequence[None], t: Array, s: Array) -> Array:
+        t, s = t[:, :, None], s[:, None, :]
+        r, w = t**p, s**p
+        rate = p * t ** (p - 1.0) * p * s ** (p - 1.0) * r
+        near = r * w
+        far = np.broadcast_to(r, near.shape)
         u, v = (near, far) if swap else (far, near)
         return np.asarray(rate[..., None] * chart.flux(su * u, sv * v))
 

@@ -7,7 +7,7 @@ edges and of the normals along its collapsed sides.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -44,8 +44,8 @@ class Fan:
     turns: Array
 
     def at(self, shares: Array) -> Array:
-        """(n, k, 3): the normals at fractions (k,) of the turns."""
-        angles = np.outer(self.turns, shares)[..., None]
+        """(n, k, 3): the normals at fractions (k,) or (n, k) of the turns."""
+        angles = (self.turns[:, None] * shares)[..., None]
         aside = np.cross(self.tangents, self.first)
         return np.asarray(np.cos(angles) * self.first[:, None] + np.sin(angles) * aside[:, None])
 
@@ -128,13 +128,14 @@ def _canal_cells(body: PackedParts, edge: int, frame: Frame) -> list[Cell]:
     if not _has_fan(body, edge):
         return []
 
-    def values(t: Array, s: Array) -> Array:
-        normals, x, xt, xtt = fan(body, edge, t)
-        n = normals.at(s)
+    def values(_: Sequence[None], t: Array, s: Array) -> Array:
+        normals, x, xt, xtt = fan(body, edge, t.ravel())
+        n = normals.at(np.repeat(s, t.shape[1], axis=0))
         speed = np.linalg.norm(xt, axis=1)[:, None]
         rise = (n * xtt[:, None]).sum(axis=2)
         areas = frame.radius * (speed - frame.radius * rise / speed) * normals.turns[:, None]
-        return flux(frame, x[:, None] + frame.radius * n, areas[..., None] * n)
+        found = flux(frame, x[:, None] + frame.radius * n, areas[..., None] * n)
+        return found.reshape(*t.shape, s.shape[1], -1)
 
     ends = curve_breaks(body.edge_parts[edge].curve)
     return [Cell(values, (float(a), 0.0), (float(b), 1.0)) for a, b in pairwise(ends)]

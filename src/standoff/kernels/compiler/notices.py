@@ -30,7 +30,7 @@ class Work(NamedTuple):
 
 
 WORK = {
-    "bodies": Work("the geometry of bodies", 15, 15, 18),
+    "bodies": Work("the geometry of bodies", 15, 15, 19),
     "query": Work("queries of bodies that are apart", 24, 30, 2),
     "contact": Work("queries in contact and penetration", 20, 40, 3),
     "frames": Work("single frames", 3, 4, 5),

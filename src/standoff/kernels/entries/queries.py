@@ -10,13 +10,14 @@ from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.algebra.vectors import unit
 from standoff.kernels.body import features, jets, trimming
 from standoff.kernels.body import inner_box as inner_boxes
-from standoff.kernels.body.net_normals import net_cone
+from standoff.kernels.body.net_normals import centred, net_cone
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import (
     INT,
     INTS,
     PAIR,
     READ,
+    READ_BLOCKS,
     READ_ROWS,
     REAL,
     ROWS,
@@ -78,6 +79,18 @@ def net_cones(nets, p, q, off, collapsed, rounding, out):
     units = np.empty((4 * p * q, 3))
     for i in range(len(nets)):
         net_cone(nets, i, (p, q), off[i], collapsed, rounding, units, out)
+
+
+@entry(READ_BLOCKS, ROWS, work="bodies")
+def centres(units, out):
+    """Axes of nearly smallest cones around unit vectors, (n, k, 3), into rows."""
+    for i in range(len(units)):
+        x = y = z = 0.0
+        for k in range(units.shape[1]):
+            x, y, z = x + units[i, k, 0], y + units[i, k, 1], z + units[i, k, 2]
+        axis, _ = centred(units[i], units.shape[1], (x, y, z))
+        for m in range(3):
+            out[i, m] = axis[m]
 
 
 @kernel

@@ -33,7 +33,6 @@ from standoff.solids.spatial.analytic import natural_of
 from standoff.solids.spatial.derivative_bounds import curve_derivatives
 from standoff.solids.spatial.leaves import (
     UNKNOWN,
-    Cone,
     NormalCones,
     edge_flags,
     face_cones,
@@ -45,6 +44,7 @@ from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
 # Parts of an edge at first, radians; and how often a part is halved.
 FIRST_ARC = 0.6
 MOST_HALVINGS = 5
+TINY = float(np.finfo(np.float64).tiny)
 
 Range = tuple[float, float]
 
@@ -67,14 +67,16 @@ def proven_kinds(
     for piece in pieces:
         of_edge.setdefault(piece.edge, []).append(piece)
     asked: dict[int, list[Range]] = {}
-    for k, edge in enumerate(boundary.edge_parts):
+    for k in range(boundary.n_edges):
         if len(sides[k]) != 2:
             continue
         found[k] = _constant(boundary, charts, of_edge.get(k, []), sides[k], k)
-        if found[k] is None:
-            asked[k] = list(edge_ranges(edge.curve, FIRST_ARC, boundary.size))
+        if found[k] is None and (parts := _asked(boundary, of_edge.get(k, []), k)):
+            asked[k] = parts
     told: dict[int, set[EdgeKind | None]] = {k: set() for k in asked}
     for depth in range(MOST_HALVINGS + 1):
+        if not asked:
+            break
         kinds, lost = _decided(boundary, asked, sides, face_cones(charts, columns, asked))
         waiting: dict[int, list[Range]] = {}
         number = 0
@@ -105,6 +107,28 @@ def _smooth(boundary: PackedParts, edge: int) -> bool:
     return bool(edge_flags(boundary, edge) & L.SMOOTH)
 
 
+def _asked(boundary: PackedParts, pieces: list[Piece], edge: int) -> list[Range]:
+    """The parts of an edge whose kinds cones may show, if any."""
+    parts = list(edge_ranges(boundary.edge_parts[edge].curve, FIRST_ARC, boundary.size))
+    return [] if _smooth(boundary, edge) and _turning(boundary, pieces, parts[0]) else parts
+
+
+def _turning(boundary: PackedParts, pieces: list[Piece], part: Range) -> bool:
+    """Do normals of a face turn along a part of an edge? Then no cones of them show it smooth."""
+    for piece in pieces:
+        first, last = max(part[0], piece.first), min(part[1], piece.last)
+        if first < last:
+            n, m = (_normal(boundary, piece, t) for t in (first, last))
+            if float(between(n, m)) > 2.0 * SMOOTH_ANGLE + TURN_ROUNDING:
+                return True
+    return False
+
+
+def _normal(boundary: PackedParts, piece: Piece, t: float) -> Array:
+    u, v, *_ = coedge_parameters(boundary.ints, boundary.reals, piece.coedge, t)
+    return np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v))
+
+
 def _sides(boundary: PackedParts) -> list[list[Side]]:
     """The faces of each edge."""
     found: list[dict[int, float]] = [{} for _ in range(boundary.n_edges)]
@@ -122,18 +146,16 @@ def _sides(boundary: PackedParts) -> list[list[Side]]:
     return [[Side(face, way) for face, way in each.items()] for each in found]
 
 
-def _tangents(curve: Curve, parts: list[Range]) -> list[Cone]:
-    """A cone around the directions of a curve in each part."""
-    found = []
-    for (first, last), d in zip(parts, curve_derivatives(curve, parts), strict=True):
-        middle = 0.5 * (first + last)
-        tangent = np.asarray(curve.jet(middle)[1], dtype=float)
-        size = float(np.linalg.norm(tangent))
-        away = float(d[1]) * 0.5 * (last - first)
-        known = size > 0.0 and away < size
-        angle = float(np.arcsin(away / size)) if known else UNKNOWN
-        found.append((tangent / (size or 1.0), angle))
-    return found
+def _tangents(curve: Curve, parts: list[Range]) -> tuple[Array, Array]:
+    """(axes (n, 3), half angles (n,)) of cones around the directions of a curve in each part."""
+    first, last = np.array(parts).T
+    tangents = curve.jets(0.5 * (first + last))[:, 1]
+    size = np.linalg.norm(tangents, axis=1)
+    away = curve_derivatives(curve, parts)[:, 1] * 0.5 * (last - first)
+    angle = np.full(len(parts), UNKNOWN)
+    with np.errstate(over="ignore"):
+        np.arcsin(away / np.maximum(size, TINY), out=angle, where=away < size)
+    return tangents / np.maximum(size, TINY)[:, None], angle
 
 
 def _decided(
@@ -147,9 +169,7 @@ def _decided(
     that leave it open whatever the tangent is."""
     counts = [len(parts) for parts in asked.values()]
     count = sum(counts)
-    tangents = [
-        t for k, parts in asked.items() for t in _tangents(boundary.edge_parts[k].curve, parts)
-    ]
+    tangents = [_tangents(boundary.edge_parts[k].curve, parts) for k, parts in asked.items()]
     edges = np.repeat(np.array(list(asked), dtype=np.int64), counts)
     firsts, ways = np.reshape([(sides[k][0].face, sides[k][0].way) for k in asked], (-1, 2)).T
     mine = cones.face == np.repeat(firsts, counts)[cones.part]
@@ -158,8 +178,8 @@ def _decided(
     at = cones.part[ones]
     i, j = np.repeat(ones, many[at]), others[ranked((np.cumsum(many) - many)[at], many[at])]
     part = cones.part[i]
-    t = np.reshape([axis for axis, _ in tangents], (-1, 3)) * np.repeat(ways, counts)[:, None]
-    turns = np.array([angle for _, angle in tangents])[part]
+    axes, wide = (np.concatenate(rows) for rows in zip(*tangents, strict=True))
+    t, turns = axes * np.repeat(ways, counts)[:, None], wide[part]
     kinds = _kinds(cones.axis[i], cones.axis[j], t[part], (cones.angle[i], cones.angle[j], turns))
     lost = np.array([_smooth(boundary, k) for k in edges.tolist()], dtype=bool)
     lost[part[kinds.lost & cones.final[i] & cones.final[j]]] = True
@@ -221,8 +241,7 @@ def _constant(
     for own in by_side:
         piece = next((p for p in own if p.first <= middle <= p.last), own[0])
         t = min(max(middle, piece.first), piece.last)
-        u, v, *_ = coedge_parameters(boundary.ints, boundary.reals, piece.coedge, t)
-        normals.append(np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v)))
+        normals.append(_normal(boundary, piece, t))
         tangent = np.asarray(curve.jet(t)[1], dtype=float)
     way = sides[0].way * tangent / np.linalg.norm(tangent)
     shown = _kinds(normals[0], normals[1], way, (0.0, 0.0, 0.0)).shown

@@ -138,7 +138,8 @@ def _piece_reals(p: Piece) -> list[float]:
 def _grown(leaves: list[Leaf]) -> list[_Node]:
     """A binary tree of boxes, its root first."""
     centres = np.array([leaf.centre for leaf in leaves])
-    corners = [leaf.centre + (CORNERS * leaf.half) @ leaf.axes for leaf in leaves]
+    corners = np.array([leaf.centre + (CORNERS * leaf.half) @ leaf.axes for leaf in leaves])
+    seen = np.array([leaf.reals[S.CONE_OUT : S.CONE_OUT + 8] for leaf in leaves])
     nodes = [_Node(list(range(len(leaves))))]
     at = 0
     while at < len(nodes):
@@ -150,12 +151,11 @@ def _grown(leaves: list[Leaf]) -> list[_Node]:
             node.reals[:] = [*leaf.centre, *leaf.axes.ravel(), *leaf.half,
                              *leaf.reals[S.CONE_OUT : S.CONE_OUT + 8]]  # fmt: skip
             continue
-        spots = np.concatenate([corners[k] for k in own])
+        spots = corners[own].reshape(-1, 3)
         axes = _axes_of(spots)
         heights = spots @ axes.T
         centre, axes, half = box_of(axes, heights.min(axis=0), heights.max(axis=0))
-        cones = [_cone_round([leaves[k].reals[o : o + 4] for k in own])
-                 for o in (S.CONE_OUT, S.CONE_IN)]  # fmt: skip
+        cones = [_cone_round(part) for part in np.split(seen[own], 2, axis=1)]
         node.reals[:] = [*centre, *axes.ravel(), *half, *cones[0], *cones[1]]
         middle = centres[own] @ axes.T
         order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
@@ -174,16 +174,15 @@ def _axes_of(spots: Array) -> Array:
     return options[int(np.argmin(sizes))]
 
 
-def _cone_round(cones: list[Array]) -> list[float]:
-    """A cone round several; a half angle of -1: none has any normal."""
-    known = [c for c in cones if c[3] >= 0.0]
-    if not known:
+def _cone_round(cones: Array) -> list[float]:
+    """A cone round several, (n, 4); a half angle of -1: none has any normal."""
+    known = cones[cones[:, 3] >= 0.0]
+    if not len(known):
         return [0.0, 0.0, 1.0, -1.0]
-    axis = np.sum([c[:3] for c in known], axis=0)
+    axis = known[:, :3].sum(axis=0)
     size = float(np.linalg.norm(axis))
-    if size <= NO_AXIS or max(c[3] for c in known) >= np.pi:
+    if size <= NO_AXIS or known[:, 3].max() >= np.pi:
         return [0.0, 0.0, 1.0, np.pi]
     axis = axis / size
-    each = np.array(known)
-    reach = float((between(axis[:, None], each[:, :3].T) + each[:, 3]).max()) + CONE_ROUNDINGS
+    reach = float((between(axis[:, None], known[:, :3].T) + known[:, 3]).max()) + CONE_ROUNDINGS
     return [*axis, reach if reach < np.pi else np.pi]

@@ -26,6 +26,10 @@ PARTS = {L.LINE: 1, L.CONIC: 8, L.BEZIER: 4}
 # How often a span of an edge is halved for its leaves, at most, and where nothing is known of it.
 MOST_HALVINGS, BLIND_HALVINGS = 5, 3
 
+Boxes = tuple[Array, Array, Array]
+"""(low, high) in (u, v) of each part of a trimming curve, and the greatest second derivatives of u
+and v along it, each (n, 2)."""
+
 
 @dataclass(frozen=True)
 class Piece:
@@ -101,11 +105,13 @@ def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece
         first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
         coedges += [(number, coedge) for coedge in range(first, first + count)]
     ends = {coedge: _ends(boundary, coedge) for _, coedge in coedges}
-    bounds = _bounds(boundary, ends)
+    bounds, boxes = _bounds(boundary, ends), _boxes(boundary, ends)
     found = []
     for number, coedge in coedges:
         chart = charts[number]
-        for piece in _pieces(boundary, number, coedge, ends[coedge], bounds[coedge]):
+        for piece in _pieces(
+            boundary, (number, coedge), ends[coedge], bounds[coedge], boxes[coedge]
+        ):
             found += _shifted(piece, chart) if chart.surface.periodic else [piece]
     return found
 
@@ -162,13 +168,15 @@ def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
 
 
 def _pieces(
-    boundary: PackedParts, chart: int, coedge: int, ends: Array, bounds: Array
+    boundary: PackedParts, of: tuple[int, int], ends: Array, bounds: Array, boxes: Boxes
 ) -> list[Piece]:
+    """The pieces of a coedge, `of` (chart, coedge)."""
+    chart, coedge = of
     row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
+    kind = int(boundary.ints[row + L.COEDGE_KIND])
     edge = _edge_of(boundary, coedge)
     found = []
-    lows, highs, bends = _boxes(boundary, kind, at + L.PCURVE_DATA, ends)
+    lows, highs, bends = boxes
     for k, (a, b) in enumerate(pairwise(ends.tolist())):
         low, high, straight = lows[k], highs[k], None
         if kind == L.LINE and (bends[k] == 0.0).all():
@@ -183,16 +191,36 @@ def _pieces(
     return found
 
 
-def _boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> tuple[Array, Array, Array]:
-    """(low, high) in (u, v) of each part of a packed trimming curve, and the greatest second
-    derivatives of u and v along it, each (n, 2)."""
-    if kind == L.BEZIER:
-        count = 3 * (int(boundary.reals[at]) + 1)
-        points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-        shares = (ends - ends[0]) / (ends[-1] - ends[0])
-        parts = segments(len(points) - 1, shares[:-1], shares[1:]) @ points
-        bends = bezier_bend(parts) / np.diff(ends)[:, None] ** 2 * (1.0 + BEND_SPARE)
-        return *bezier_box(parts), bends
+def _boxes(boundary: PackedParts, ends: dict[int, Array]) -> dict[int, Boxes]:
+    """Of packed trimming curves the boxes of parts, of all Bezier ones of a degree at once."""
+    found: dict[int, Boxes] = {}
+    alike: dict[int, list[tuple[int, int]]] = {}
+    for coedge, ts in ends.items():
+        row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+        at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
+        at += L.PCURVE_DATA
+        if kind == L.BEZIER:
+            alike.setdefault(int(boundary.reals[at]), []).append((coedge, at + 1))
+        else:
+            found[coedge] = _plain_boxes(boundary, kind, at, ts)
+    for degree, group in alike.items():
+        counts = [len(ends[coedge]) - 1 for coedge, _ in group]
+        nets = [boundary.reals[at : at + 3 * degree + 3].reshape(-1, 3) for _, at in group]
+        every = [ends[coedge] for coedge, _ in group]
+        shares = [(ts - ts[0]) / (ts[-1] - ts[0]) for ts in every]
+        first, last = (
+            np.concatenate([s[part] for s in shares]) for part in (slice(-1), slice(1, None))
+        )
+        parts = segments(degree, first, last) @ np.repeat(nets, counts, axis=0)
+        wide = np.concatenate([np.diff(ts) for ts in every])[:, None]
+        rows = *bezier_box(parts), bezier_bend(parts) / wide**2 * (1.0 + BEND_SPARE)
+        split = (np.split(each, np.cumsum(counts)[:-1]) for each in rows)
+        found.update(zip([coedge for coedge, _ in group], zip(*split, strict=True), strict=True))
+    return found
+
+
+def _plain_boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> Boxes:
+    """Those of a line or a conic."""
     matrix = boundary.reals[at : at + 9].reshape(3, 3)
     if (matrix[2, :2] != 0.0).any():
         bends = pcurve_bends(kind, matrix, ends)
@@ -229,10 +257,11 @@ def _halved(
     waiting = spans
     for depth in range(MOST_HALVINGS + 1):
         again: list[tuple[float, float]] = []
-        for (a, b), d in zip(waiting, curve_derivatives(curve, waiting), strict=True):
+        speeds = np.linalg.norm(curve.jets(np.mean(waiting, axis=1))[:, 1], axis=1)
+        bounds = curve_derivatives(curve, waiting)
+        for (a, b), d, speed in zip(waiting, bounds, speeds.tolist(), strict=True):
             known = bool(np.isfinite(d[:2]).all())
             if known:
-                speed = float(np.linalg.norm(curve.jet(0.5 * (a + b))[1]))
                 done = d[1] * (b - a) <= arc * speed and d[0] * (b - a) <= longest
             else:
                 done = depth == BLIND_HALVINGS
