@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
-from standoff.bodies.tessellation import chart_row
+from standoff.bodies.tessellation import coedge_range, packed_pcurve
 from standoff.geometry.bernstein import segments
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_bends, pcurve_boxes
@@ -95,11 +95,7 @@ def columns_of(pieces: list[Piece]) -> PieceColumns:
 def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece]:
     """The pieces of all trimming curves; on periodic charts with their images a turn away that the
     chart's rectangle reaches."""
-    coedges = []
-    for number in charts:
-        row = chart_row(boundary, number)
-        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-        coedges += [(number, coedge) for coedge in range(first, first + count)]
+    coedges = [(number, k) for number in charts for k in coedge_range(boundary, number)]
     ends = {coedge: _ends(boundary, coedge) for _, coedge in coedges}
     bounds = _bounds(boundary, ends)
     found = []
@@ -117,9 +113,7 @@ def _edge_of(boundary: PackedParts, coedge: int) -> int:
 
 def _ends(boundary: PackedParts, coedge: int) -> Array:
     """Ascending parameters (n + 1,) that part a packed coedge."""
-    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
-    first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
+    kind, first, last, _ = packed_pcurve(boundary, coedge)
     ends = np.linspace(first, last, PARTS[kind] + 1)
     edge = _edge_of(boundary, coedge)
     curve = boundary.edge_parts[edge].curve if edge >= 0 else None
@@ -164,11 +158,10 @@ def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
 def _pieces(
     boundary: PackedParts, chart: int, coedge: int, ends: Array, bounds: Array
 ) -> list[Piece]:
-    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
+    kind, _, _, matrix = packed_pcurve(boundary, coedge)
     edge = _edge_of(boundary, coedge)
     found = []
-    lows, highs, bends = _boxes(boundary, kind, at + L.PCURVE_DATA, ends)
+    lows, highs, bends = _boxes(kind, matrix, ends)
     for k, (a, b) in enumerate(pairwise(ends.tolist())):
         low, high, straight = lows[k], highs[k], None
         if kind == L.LINE and (bends[k] == 0.0).all():
@@ -183,17 +176,14 @@ def _pieces(
     return found
 
 
-def _boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> tuple[Array, Array, Array]:
+def _boxes(kind: int, matrix: Array, ends: Array) -> tuple[Array, Array, Array]:
     """(low, high) in (u, v) of each part of a packed trimming curve, and the greatest second
     derivatives of u and v along it, each (n, 2)."""
     if kind == L.BEZIER:
-        count = 3 * (int(boundary.reals[at]) + 1)
-        points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
         shares = (ends - ends[0]) / (ends[-1] - ends[0])
-        parts = segments(len(points) - 1, shares[:-1], shares[1:]) @ points
+        parts = segments(len(matrix) - 1, shares[:-1], shares[1:]) @ matrix
         bends = bezier_bend(parts) / np.diff(ends)[:, None] ** 2 * (1.0 + BEND_SPARE)
         return *bezier_box(parts), bends
-    matrix = boundary.reals[at : at + 9].reshape(3, 3)
     if (matrix[2, :2] != 0.0).any():
         bends = pcurve_bends(kind, matrix, ends)
     else:
