@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import standoff as so
-from standoff.cad.instances import Instance, brep_instances, step_instances
+from standoff.cad.instances import Instance, at_place, brep_instances, step_instances
 from standoff.cad.making import made_part
 from standoff.solids import Solid
 
@@ -75,16 +75,6 @@ def posed(a: Loaded, b: Loaded, gap: float, rng: np.random.Generator) -> Pose | 
     return None
 
 
-def moved(shape: Any, rows: np.ndarray) -> Any:
-    """A shape of OpenCASCADE at a pose (3, 4)."""
-    from OCP.gp import gp_Trsf
-    from OCP.TopLoc import TopLoc_Location
-
-    motion = gp_Trsf()
-    motion.SetValues(*rows.ravel().tolist())
-    return shape.Moved(TopLoc_Location(motion))
-
-
 def between(one: Any, other: Any) -> float:
     """OpenCASCADE's distance of its shapes."""
     from OCP.BRepExtrema import BRepExtrema_DistShapeShape
@@ -94,7 +84,7 @@ def between(one: Any, other: Any) -> float:
 
 def their_distance(a: Any, b: Any, pose: Pose) -> float:
     """Of two whose `theirs` are shapes of OpenCASCADE."""
-    return between(a.theirs, moved(b.theirs, np.column_stack(pose)))
+    return between(a.theirs, at_place(Instance("", b.theirs, np.column_stack(pose), None)))
 
 
 def timed(function: Callable[..., Any], *given: Any) -> tuple[Any, float]:

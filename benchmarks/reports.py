@@ -24,10 +24,8 @@ from itertools import combinations, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from benchmarks.cad_gaps import between, moved
-from standoff.cad.instances import step_instances
+from benchmarks.cad_gaps import between
+from standoff.cad.instances import at_place, step_instances
 
 COMMAND = "import sys; from standoff.cli import main; sys.exit(main())"
 LEAST = 0.1
@@ -211,7 +209,7 @@ def wrong(known: Known, facts: dict[str, Any]) -> list[str]:
 def their_time(file: Path, most: int) -> float:
     """What OpenCASCADE's distances of all pairs take, s, by those of `most` of them."""
     found = step_instances(file, "mm")[0]
-    shapes = [moved(each.shape, np.asarray(each.pose)[:3]) for each in found]
+    shapes = [at_place(each) for each in found]
     count = len(shapes) * (len(shapes) - 1) // 2
     start = time.process_time()
     asked = [between(*pair) for pair in islice(combinations(shapes, 2), most)]

@@ -23,17 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.robots.report import EXACT, HULL
 
-try:
+with of_extra("MuJoCo", "mujoco"):
     import mujoco
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
-try:
+with of_extra("Pinocchio", "pinocchio"):
     import pinocchio as pin
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "robots"))
 import robot_models

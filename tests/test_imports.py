@@ -1,7 +1,7 @@
 """What `import standoff`, its help and one query load, and that every name is there when asked for.
 
 Each is seen from a fresh interpreter. A package that imports on demand (`standoff.on_demand`) names
-what is public three times: for type checkers, in its table, and in `__all__`.
+what is public twice: for type checkers, and in `__all__`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 
@@ -125,28 +125,15 @@ def packages(modules: set[str]) -> set[str]:
     return {name.partition(".")[0] for name in modules}
 
 
-class Declared(NamedTuple):
-    """What the file of a package says that it hands out, by module: (module, name)."""
-
-    for_checkers: set[tuple[str, str]]
-    on_demand: set[tuple[str, str]]
-
-
-def declared(file: Path) -> Declared:
+def declared(file: Path) -> set[tuple[str, str]]:
+    """What the file of a package says that it hands out: (module, name)."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     (guard,) = (node for node in tree.body if isinstance(node, ast.If))
     assert isinstance(guard.test, ast.Name)
     assert guard.test.id == "TYPE_CHECKING"
-    (assigned,) = guard.orelse
-    assert isinstance(assigned, ast.Assign)
-    assert isinstance(assigned.value, ast.Call)
-    table: dict[str, tuple[str, ...]] = ast.literal_eval(assigned.value.args[1])
     imports = [node for node in guard.body if isinstance(node, ast.ImportFrom)]
     assert len(imports) == len(guard.body)
-    return Declared(
-        {(str(node.module), alias.name) for node in imports for alias in node.names},
-        {(module, name) for module, names in table.items() for name in names},
-    )
+    return {(str(node.module), alias.name) for node in imports for alias in node.names}
 
 
 FILES = {
@@ -214,25 +201,22 @@ def test_every_package_that_should_imports_on_demand() -> None:
 
 @pytest.mark.parametrize("package", FILES)
 def test_a_package_hands_out_what_type_checkers_read(package: str) -> None:
-    said = declared(FILES[package])
-    own = {(module, name) for module, name in said.for_checkers if module == package}
-    assert said.for_checkers - own == said.on_demand
     public = import_module(package).__all__
-    assert sorted(name for _, name in said.for_checkers) == sorted(public)
+    assert sorted(name for _, name in declared(FILES[package])) == sorted(public)
 
 
 @pytest.mark.parametrize("package", FILES)
 def test_a_package_lists_and_has_every_public_name(package: str) -> None:
     module = import_module(package)
     assert set(module.__all__) <= set(dir(module))
-    for home, name in declared(FILES[package]).on_demand:
+    for home, name in declared(FILES[package]):
         assert getattr(module, name) is getattr(import_module(home), name)
 
 
 @pytest.mark.parametrize("quarter", only([0], range(4)))
 def test_every_module_of_public_names_can_be_the_first_to_be_imported(quarter: int) -> None:
     """tests/test_layers.py finds the circles of imports that would keep one from it."""
-    homes = {home for file in FILES.values() for home, _ in declared(file).on_demand}
+    homes = {home for file in FILES.values() for home, _ in declared(file)}
     fresh(f"""
 {FORGET}
 for home in {sorted(homes - set(FILES))[quarter::4]}:
@@ -276,7 +260,7 @@ assert standoff.feedback.Linear
 def test_a_module_never_takes_the_place_of_a_public_name() -> None:
     """Importing `recording.track` would bind it in its package, where it is a function."""
     same = {
-        package: [name for home, name in declared(file).on_demand if home == f"{package}.{name}"]
+        package: [name for home, name in declared(file) if home == f"{package}.{name}"]
         for package, file in FILES.items()
     }
     several = ("geometry", "recording", "simulation", "tracking")

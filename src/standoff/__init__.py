@@ -46,52 +46,6 @@ if TYPE_CHECKING:
 else:
     __getattr__, __dir__ = on_demand(
         __name__,
-        {
-            "standoff.bodies": (
-                "Body",
-                "shapes",
-            ),
-            "standoff.bodies.voronoi": ("voronoi_regions",),
-            "standoff.cad": ("read_step",),
-            "standoff.control": ("min_gain",),
-            "standoff.design": (
-                "Design",
-                "shape_gradient",
-            ),
-            "standoff.errors": (
-                "BodyError",
-                "StandoffError",
-            ),
-            "standoff.motion": (
-                "Pose",
-                "Poses",
-                "Twist",
-            ),
-            "standoff.tracking": (
-                "Event",
-                "Feature",
-                "PaperLaw",
-                "PredictorCorrector",
-                "Proximity",
-                "Status",
-                "Tracker",
-                "TrackerState",
-                "WitnessSet",
-                "distance",
-                "distances",
-                "feedback",
-                "max_gain",
-                "plot",
-                "witness_set",
-            ),
-            "standoff.impact": ("time_of_impact",),
-            "standoff.points": ("PointTracker",),
-            "standoff.recording": ("Recording", "open_recording", "track"),
-            "standoff.robots": ("Robot",),
-            "standoff.solids": ("PlanarSolid", "Solid"),
-            "standoff.view": ("view",),
-            "standoff.world": ("World", "compound"),
-        },
         modules=(
             "automaton",
             "bodies",

@@ -8,13 +8,11 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.design import Design
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.frameworks import ambient, designed
 
-try:
+with of_extra("CasADi", "casadi"):
     import casadi
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("CasADi", "casadi"), name=error.name) from error
 
 __all__ = ["design_distance", "distance"]
 

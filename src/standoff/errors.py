@@ -6,6 +6,8 @@ that kind too.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from standoff.wording import printable
@@ -149,3 +151,24 @@ def not_installed(library: str, extra: str = "cli") -> str:
     return (
         f"{library} is not installed; install the extra '{extra}': pip install 'standoff[{extra}]'"
     )
+
+
+@contextmanager
+def of_extra(library: str, extra: str = "cli") -> Iterator[None]:
+    """For the imports within: where a library is missing, the extra that it comes with is told.
+
+    Parameters
+    ----------
+    library : str
+        As it is called; if empty, the module that is missing.
+    extra : str
+
+    Raises
+    ------
+    ModuleNotFoundError
+    """
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        called = library or str(error.name).replace("_", "-")
+        raise ModuleNotFoundError(not_installed(called, extra), name=error.name) from error

@@ -10,14 +10,12 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.design import Design
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.frameworks import ambient, designed
 
-try:
+with of_extra("JAX", "jax"):
     import jax
     import jax.numpy as jnp
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("JAX", "jax"), name=error.name) from error
 
 __all__ = ["design_distance", "distance"]
 

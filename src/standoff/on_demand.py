@@ -7,10 +7,11 @@ little of it. Type checkers read the imports that such a package has under TYPE_
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dis import get_instructions
 from importlib import import_module
 from importlib.util import find_spec
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import Any
 
 
@@ -26,22 +27,29 @@ class _Package(ModuleType):
         super().__setattr__(name, value)
 
 
+def _imports(code: CodeType) -> Iterator[tuple[str, str]]:
+    """The names that a module's code imports, each with the module it comes from: also those under
+    TYPE_CHECKING, which are compiled though they never run."""
+    module = ""
+    for step in get_instructions(code):
+        if step.opname == "IMPORT_NAME":
+            module = step.argval
+        elif step.opname == "IMPORT_FROM":
+            yield step.argval, module
+
+
 def on_demand(
-    package: str,
-    names: Mapping[str, Sequence[str]],
-    *,
-    modules: Sequence[str] = (),
+    package: str, *, modules: Sequence[str] = ()
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return a package's ``__getattr__`` and ``__dir__``.
+    """Return a package's ``__getattr__`` and ``__dir__``, as its own file calls it: it hands out
+    what its file imports under TYPE_CHECKING.
 
     Parameters
     ----------
     package : the package's ``__name__``.
-    names : by module, what the package hands out of it. The package's own modules, which are
-        handed out too, need no entry.
-    modules : those of its own modules that are public: what `dir` lists besides `names`.
+    modules : those of its own modules that are public: what `dir` lists besides ``__all__``.
     """
-    homes = {name: module for module, group in names.items() for name in group}
+    homes = {name: home for name, home in _imports(sys._getframe(1).f_code) if home != package}
     this = sys.modules[package]
     vars(this)["_homes"] = homes
     this.__class__ = _Package
@@ -58,7 +66,7 @@ def on_demand(
         raise AttributeError(f"module {package!r} has no attribute {name!r}")
 
     def __dir__() -> list[str]:
-        public = {*homes, *modules, *vars(this).get("__all__", ())}
+        public = {*modules, *vars(this).get("__all__", ())}
         return sorted({*public, *(name for name in vars(this) if name.startswith("__"))})
 
     return __getattr__, __dir__

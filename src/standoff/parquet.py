@@ -9,13 +9,11 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 
-try:
+with of_extra("pyarrow"):
     import pyarrow as pa
     import pyarrow.parquet as pq
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("pyarrow"), name="pyarrow") from error
 
 __all__ = ["METADATA", "pa", "pq", "table", "vectors", "write"]
 

@@ -8,13 +8,11 @@ from typing import Any
 from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.design import Design
-from standoff.errors import StandoffError, StandoffTypeError, not_installed
+from standoff.errors import StandoffError, StandoffTypeError, of_extra
 from standoff.frameworks import ambient, designed
 
-try:
+with of_extra("PyTorch", "torch"):
     import torch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("PyTorch", "torch"), name=error.name) from error
 
 __all__ = ["design_distance", "distance"]
 

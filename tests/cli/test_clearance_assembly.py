@@ -7,11 +7,14 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("OCP")
 
 from cad import cad_shapes as made
+from standoff.cad import CadError, common_volumes, measures, read_cad
+from standoff.cad.instances import Instance, at_place
 from standoff.clearance.report import Report
 
 
@@ -86,13 +89,24 @@ def test_bad_files_and_options_are_code_2(standoff: Any, file: Path, tmp_path: P
         assert "Traceback" not in ended.err
 
 
+PRESSED = pi * 10 * (3.025**2 - 9)
+
+
+def shifted(*by: float) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, 3] = by
+    return pose
+
+
 @pytest.fixture(scope="module")
 def pressed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A pin of 3.025 in a bore of 3, a plate 0.5 into the bush, and a cube beside them."""
     bush = made.cut(made.cylinder((0, 0, 0), 5.0, 10), made.cylinder((0, 0, -1), 3.0, 12))
     plate = made.box(20, 20, 2, (-10, -10, 9.5))
     plate = made.cut(plate, made.cylinder((0, 0, 0), 4.0, 20))
-    pin, cube = made.cylinder((0, 0, 0), 3.025, 10), made.box(1, 1, 1, (12, 0, 0))
+    # the pin has its own place in the file
+    pin = at_place(Instance("pin", made.cylinder((7, 0, -5), 3.025, 10), shifted(-7, 0, 5), None))
+    cube = made.box(1, 1, 1, (12, 0, 0))
     folder = tmp_path_factory.mktemp("pressed")
     path: Path = write_parts(folder / "pressed.step", [bush, pin, plate, cube])
     return path
@@ -105,7 +119,7 @@ def test_volumes_in_common(standoff: Any, pressed: Path, file: Path, tmp_path: P
     assert ended.code == 0
     _, told = facts(standoff, pressed, "--volume")
     volumes = [pair.get("common_volume") for pair in told["pairs"]]
-    known = [pi * 10 * (3.025**2 - 9), pi * 0.5 * (25 - 16)]
+    known = [PRESSED, pi * 0.5 * (25 - 16)]
     found = sorted(volume for volume in volumes if volume is not None)
     assert found == pytest.approx(sorted(known), rel=1e-6)
     assert told["verdicts"]["OVERLAPPING"] == len(found)
@@ -118,6 +132,21 @@ def test_volumes_in_common(standoff: Any, pressed: Path, file: Path, tmp_path: P
     # nothing overlaps
     _, told = facts(standoff, file, "--volume")
     assert all("common_volume" not in pair for pair in told["pairs"])
+
+
+def test_volumes_of_parts_by_their_names(pressed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the unit asked; none that OpenCASCADE's operation does not give; of no unknown part."""
+    names = [part.name for part in read_cad(pressed, unit="cm").parts]
+    pair = names[0], names[1]
+    assert common_volumes(pressed, [pair], unit="cm") == pytest.approx({pair: PRESSED / 1e3})
+    assert common_volumes(pressed, []) == {}
+    with pytest.raises(CadError, match="no part 'bolt'"):
+        common_volumes(pressed, [(names[0], "bolt")])
+    monkeypatch.setattr(measures, "volume_of", lambda shape, adaptive=False: 1.0 + adaptive)
+    assert common_volumes(pressed, [pair]) == {pair: 2.0}
+    told = iter([5.0, 4.0, 6.0])  # of the common part, more than one of both has
+    monkeypatch.setattr(measures, "volume_of", lambda *_, **__: next(told))
+    assert common_volumes(pressed, [pair]) == {pair: None}
 
 
 def test_volumes_are_of_parts_of_a_cad_file(standoff: Any) -> None:

@@ -7,6 +7,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numba import njit
 
 from draws import draws
@@ -20,7 +22,8 @@ from standoff.kernels.compiler.decorators import pointer
 from standoff.kernels.entries.queries import coedge_parameters, on_face
 from standoff.kernels.entries.solids import side_at
 from standoff.kernels.solids import spatial_layout as S
-from standoff.kernels.solids.spatial_bounds import proven
+from standoff.kernels.solids.spatial_bounds import along_trim, proven
+from standoff.kernels.solids.spatial_heights import wave_rise
 from standoff.kernels.solids.torus_potential import (
     AXIS_OF,
     CENTRE_OF,
@@ -69,6 +72,7 @@ ROUNDED = 1e-13
 """Length, of parts of about 1: what less than a sample may be by its rounding."""
 DRAWS = draws(400)
 RIM_BOXES = 20
+TURN = 2.0 * np.pi
 
 
 @njit
@@ -142,17 +146,21 @@ def is_on(solid, chart, u, v) -> bool:
 
 
 @cache
-def trimming(solid, chart) -> list[tuple[float, float]]:
-    """Parameters of places on a chart's trimming curves."""
+def trimming_curves(solid, chart, count=97) -> list[list[tuple[float, float]]]:
+    """Parameters of places along each of a chart's trimming curves."""
     if chart < 0:
         return []
     ints, reals = solid.boundary.ints, solid.boundary.reals
     row, found = chart_row(solid.boundary, chart), []
     for coedge in range(row[L.CHART_COEDGE], row[L.CHART_COEDGE] + row[L.CHART_N_COEDGES]):
         o = ints[ints[L.COEDGES] + L.COEDGE_STRIDE * coedge + L.COEDGE_REALS]
-        ends = reals[o + L.PCURVE_FIRST], reals[o + L.PCURVE_LAST]
-        found += [coedge_parameters(ints, reals, coedge, t)[:2] for t in np.linspace(*ends, 97)]
+        ts = np.linspace(reals[o + L.PCURVE_FIRST], reals[o + L.PCURVE_LAST], count)
+        found.append([coedge_parameters(ints, reals, coedge, t)[:2] for t in ts])
     return found
+
+
+def trimming(solid, chart) -> list[tuple[float, float]]:
+    return [place for curve in trimming_curves(solid, chart) for place in curve]
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -267,3 +275,68 @@ def test_a_plane_is_closed_along_a_rim_at_once(name, half, rng) -> None:
             assert counts[0] <= RIM_BOXES
             seen |= on_top
     assert seen
+
+
+@njit
+def told_along(solid, pose, leaf, box, phi, sign, most, counts):
+    part = S.Part(side_at(solid, pose, S.OUTSIDE), leaf, S.Box(box[0], box[1], box[2], box[3]))
+    return along_trim(phi, sign, most, part, pointer(counts, 0))
+
+
+@cache
+def along_trims(solid, chart) -> tuple[np.ndarray, np.ndarray]:
+    """Parameters (m, n, 2) along a chart's trimming curves and their points (m, n, 3)."""
+    curves = np.array(trimming_curves(solid, chart, 200))
+    leaf = next(k for k, leaf in enumerate(solid.leaves) if leaf.chart == chart)
+    return curves, np.array([[leaf_jet_of(solid.packed, leaf, *q)[0] for q in c] for c in curves])
+
+
+@pytest.mark.parametrize("name", ["star", "ring", "bolt", "taper", "oval"])
+def test_what_is_told_along_trims_is_true_of_their_samples(name, rng) -> None:
+    """At most `most`: no sample in the box has more. More: one in the box or just beside it has, or
+    a place next to it. What is clearly one or the other is told."""
+    solid, told, missed = SOLIDS[name](), [], 0
+    parts = [k for k, leaf in enumerate(solid.leaves) if leaf.dim == 2 and leaf.cut]
+    for _ in range(DRAWS):
+        leaf = int(rng.choice(parts))
+        low, high = np.reshape(solid.leaves[leaf].reals[:4], (2, 2)).T
+        drawn_box = np.sort(rng.uniform(low, high, (2, 2)), axis=0)
+        first, last = (low, high) if rng.random() < 0.3 else drawn_box
+        curves, points = along_trims(solid, solid.leaves[leaf].chart)
+        phi, sign = drawn(rng, points.reshape(-1, 3)), float(rng.choice([-1.0, 1.0]))
+        values = [[sign * potential_jet(phi, tuple(p), 0.0)[0] for p in c] for c in points]
+        held = ((first <= curves) & (curves <= last)).all(axis=2)
+        in_box = np.array(values)[held]
+        share = rng.choice([-0.3, -1e-2, -1e-3, -1e-6, 1e-3, 0.05, 0.3])
+        greatest = in_box.max(initial=-np.inf)
+        most = (greatest if len(in_box) else np.median(values)) + share * np.ptp(values)
+        counts = np.zeros(8, dtype=np.int64)
+        box = np.array([first, last]).T.ravel()
+        told.append(told_along(solid.packed, IDENTITY, leaf, box, phi, sign, most, counts))
+        missed += told[-1] == 0 and abs(share) > 0.03
+        if told[-1] == 1:
+            assert greatest <= most + 1e-12 * (1.0 + abs(most))
+        if told[-1] == -1:
+            step = np.abs(np.diff(curves, axis=1)).max(axis=(0, 1))
+            turned = curves[..., None, :] + np.array([(-TURN, 0.0), (0.0, 0.0), (TURN, 0.0)])
+            beside = ((first - step <= turned) & (turned <= last + step)).all(axis=3).any(axis=2)
+            gap = np.linalg.norm(np.diff(points, axis=1), axis=2).max()
+            assert np.array(values)[beside].max(initial=-np.inf) + gap > most
+    assert min(told.count(1), told.count(-1)) > 0.1 * DRAWS
+    assert missed < 0.05 * DRAWS
+
+
+@given(
+    st.floats(-1.0, 1.0),
+    st.sampled_from([0.0, 1e-12, 1e-6, 1e-3]) | st.floats(0.0, 7.0),
+    st.integers(-9, 9),
+    st.sampled_from([-1.0, 0.0, 1.0]),
+)
+def test_a_wave_rises_no_higher_than_is_told_and_as_high(b, wide, power, sign) -> None:
+    """Of small and of large radius: within rounding of what is told, not of the radius."""
+    c = sign * 10.0**power
+    top = np.arctan2(b, -c)
+    t = np.append(np.linspace(-wide, wide, 2001), [top] if abs(top) <= wide else [])
+    values = b * np.sin(t) + 2.0 * c * np.sin(0.5 * t) ** 2
+    told, spare = wave_rise(b, c, wide), 4e-16 * (abs(b) * min(wide, 1.0) + values.max())
+    assert values.max() - spare <= told <= values.max() + spare

@@ -14,16 +14,7 @@ if TYPE_CHECKING:
     from standoff.automaton.transitions import Transition
     from standoff.automaton.visits import Visit
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.automaton.branches": ("BranchAutomaton", "BranchEvent"),
-            "standoff.automaton.graph": ("Automaton",),
-            "standoff.automaton.parallel": ("SolidAutomaton",),
-            "standoff.automaton.transitions": ("Transition",),
-            "standoff.automaton.visits": ("Visit",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Automaton",

@@ -9,13 +9,11 @@ from typing import Protocol
 from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Visit, mode_of
 from standoff.bodies.features import Feature
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 
-try:
+with of_extra("matplotlib"):
     from matplotlib.axes import Axes
     from matplotlib.patches import FancyArrowPatch, Patch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 Place = tuple[float, float]
 

@@ -18,6 +18,7 @@ from standoff.automaton.transitions import Transition
 from standoff.automaton.visits import Course, Visit
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature, feature_of
+from standoff.bodies.tessellation import coedges_of
 from standoff.kernels.body import layout as L
 
 
@@ -128,14 +129,8 @@ def _face_of_chart(body: Boundary, chart: int) -> int:
 
 def _sides(body: Boundary) -> list[tuple[int, int]]:
     """(face, edge) of every coedge, each once; a collapsed side has -1 - vertex for its edge."""
-    found: dict[tuple[int, int], None] = {}
-    for chart in range(int(body.ints[L.N_CHARTS])):
-        row = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
-        first, count = body.ints[row + L.CHART_COEDGE], body.ints[row + L.CHART_N_COEDGES]
-        for k in range(int(first), int(first + count)):
-            edge = body.ints[int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k + L.COEDGE_EDGE]
-            found[int(body.ints[row + L.CHART_FACE]), int(edge)] = None
-    return list(found)
+    sides = [(_face_of_chart(body, chart), edge) for _, chart, edge in coedges_of(body)]
+    return list(dict.fromkeys(sides))
 
 
 def _off_faces(body: Boundary, name: str) -> list[Transition]:

@@ -9,15 +9,13 @@ from standoff.automaton.branch_text import visit_at
 from standoff.automaton.branches import BranchAutomaton, BranchEvent, ParallelBranches
 from standoff.automaton.text import moves
 from standoff.automaton.visits import Mode, mode_of
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.tracking.branches import NONE
 
-try:
+with of_extra("matplotlib"):
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 NEAREST_FILL = "#5AA9D6"
 """Between the fill of a visit and the colour of its border."""

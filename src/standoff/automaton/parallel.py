@@ -69,14 +69,14 @@ class SolidAutomaton(ParallelBranches):
         OSError
             If the file cannot be written.
         """
-        from standoff.bodies.drawing.files import checked_file, write_picture
+        from standoff.bodies.drawing.files import drawn
 
-        target = None if path is None else checked_file(path)
-        from standoff.automaton.picture import automaton_figure
+        def draw() -> Figure:
+            from standoff.automaton.picture import automaton_figure
 
-        figure = automaton_figure(self, self.names)
-        if target is not None:
-            write_picture(figure, target)
+            return automaton_figure(self, self.names)
+
+        figure: Figure = drawn(path, draw)
         return figure
 
 

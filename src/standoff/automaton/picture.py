@@ -20,16 +20,14 @@ from standoff.automaton.lanes import draw_lanes
 from standoff.automaton.lanes import rows_of as lanes_of
 from standoff.automaton.text import MOST_DRAWN, Names, moves, product_switches
 from standoff.bodies.features import Feature
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.wording import counted
 
-try:
+with of_extra("matplotlib"):
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import FancyArrowPatch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 NODE_WIDTH, APART = 0.62, 0.95
 """Inches that a feature takes in its row: room for its name and its time; and for an arc beside it,

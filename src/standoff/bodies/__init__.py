@@ -13,23 +13,7 @@ if TYPE_CHECKING:
     from standoff.bodies.topology import Apex, Edge, Face
     from standoff.errors import BodyError
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.bodies.body": ("Body",),
-            "standoff.bodies.boundary": ("Boundary", "EdgeKind"),
-            "standoff.bodies.meshes.columns": ("Fit",),
-            "standoff.bodies.meshes.decomposition": ("Decomposition", "decomposition"),
-            "standoff.bodies.report": (
-                "BodyReport",
-                "BoundaryReport",
-                "DihedralAngle",
-                "PatchCheck",
-            ),
-            "standoff.bodies.topology": ("Apex", "Edge", "Face"),
-            "standoff.errors": ("BodyError",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Apex",

@@ -332,12 +332,9 @@ class Body(Boundary):
             If the file cannot be written.
         """
         from standoff.bodies.drawing.body_picture import draw_body
-        from standoff.bodies.drawing.files import checked_file, write_picture
+        from standoff.bodies.drawing.files import drawn
 
-        target = None if path is None else checked_file(path)
-        figure = draw_body(self, self.report, self.name, str(unit))
-        if target is not None:
-            write_picture(figure, target)
+        figure: Figure = drawn(path, lambda: draw_body(self, self.report, self.name, str(unit)))
         return figure
 
     @property

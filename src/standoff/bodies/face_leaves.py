@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.packed_parts import PackedParts
-from standoff.bodies.tessellation import TILE, chart_row, surface_of
+from standoff.bodies.tessellation import TILE, chart_row, coedge_range, packed_pcurve, surface_of
 from standoff.bodies.tolerances import BOX_REACH
-from standoff.geometry.bernstein import equal_segments
-from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
+from standoff.geometry.pcurve_boxes import equal_boxes
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -95,26 +94,11 @@ def _may_be_on(boundary: PackedParts, chart: FaceChart, rows: Array) -> NDArray[
 
 def _borders(boundary: PackedParts, number: int) -> tuple[Array, Array]:
     """(low, high), each (m, 2), of boxes around parts of a chart's trimming curves."""
-    row = chart_row(boundary, number)
-    first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-    boxes = [_coedge_boxes(boundary, k, PARTS) for k in range(first, first + count)]
+    curves = [packed_pcurve(boundary, k) for k in coedge_range(boundary, number)]
+    boxes = [equal_boxes(c.kind, c.matrix, c.first, c.last, PARTS) for c in curves]
     if not boxes:
         return np.empty((0, 2)), np.empty((0, 2))
     return np.concatenate([b[0] for b in boxes]), np.concatenate([b[1] for b in boxes])
-
-
-def _coedge_boxes(boundary: PackedParts, number: int, parts: int) -> tuple[Array, Array]:
-    """(low, high), each (n, 2), around parts of a packed trimming curve."""
-    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * number
-    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
-    first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
-    at += L.PCURVE_DATA
-    if kind == L.BEZIER:
-        count = 3 * (int(boundary.reals[at]) + 1)
-        points = boundary.reals[at + 1 : at + 1 + count].reshape(-1, 3)
-        return bezier_box(equal_segments(len(points) - 1, parts) @ points)
-    matrix = boundary.reals[at : at + 9].reshape(3, 3)
-    return pcurve_boxes(kind, matrix, np.linspace(first, last, parts + 1))
 
 
 def leaves_of(boundary: PackedParts, chart: FaceChart, widest: float) -> Leaves:

@@ -25,8 +25,8 @@ from standoff.bodies.tolerances import (
     SMALLEST_PART,
 )
 from standoff.errors import BodyError
-from standoff.geometry.bernstein import equal_segments, segments
-from standoff.geometry.pcurve_boxes import bezier_box, pcurve_boxes
+from standoff.geometry.bernstein import segments
+from standoff.geometry.pcurve_boxes import bezier_box, equal_boxes
 from standoff.geometry.torus import full_turn
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
@@ -111,12 +111,9 @@ def is_rim(c: Coedge) -> bool:
 def _boxes(c: Coedge, first: float, last: float) -> tuple[Array, Array]:
     """(low, high), each (PARTS, 2), of (u, v) along equal parts of a coedge's range."""
     points = c.pcurve.matrix
-    if c.pcurve.kind == L.BEZIER and (first, last) == (c.first, c.last):
-        return bezier_box(equal_segments(len(points) - 1, PARTS) @ points)
-    ends = np.linspace(first, last, PARTS + 1)
-    if c.pcurve.kind != L.BEZIER:
-        return pcurve_boxes(c.pcurve.kind, points, ends)
-    shares = (ends - c.first) / (c.last - c.first)
+    if c.pcurve.kind != L.BEZIER or (first, last) == (c.first, c.last):
+        return equal_boxes(c.pcurve.kind, points, first, last, PARTS)
+    shares = (np.linspace(first, last, PARTS + 1) - c.first) / (c.last - c.first)
     return bezier_box(segments(len(points) - 1, shares[:-1], shares[1:]) @ points)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy
@@ -105,13 +106,38 @@ def chart_row(body: PackedParts, chart: int) -> NDArray[np.int64]:
     return body.ints[start : start + L.CHART_STRIDE]
 
 
+def coedge_range(body: PackedParts, chart: int) -> range:
+    """The packed numbers of a chart's coedges."""
+    row = chart_row(body, chart)
+    first = int(row[L.CHART_COEDGE])
+    return range(first, first + int(row[L.CHART_N_COEDGES]))
+
+
+class PackedPcurve(NamedTuple):
+    """A packed trimming curve: its kind, its range, and a (3, 3) matrix or the homogeneous points
+    (n, 3) of a Bezier curve over all of the range."""
+
+    kind: int
+    first: float
+    last: float
+    matrix: Array
+
+
+def packed_pcurve(body: PackedParts, coedge: int) -> PackedPcurve:
+    row = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
+    at, kind = int(body.ints[row + L.COEDGE_REALS]), int(body.ints[row + L.COEDGE_KIND])
+    first, last = body.reals[at : at + L.PCURVE_DATA].tolist()
+    at, count = at + L.PCURVE_DATA, 9
+    if kind == L.BEZIER:
+        at, count = at + 1, 3 * (int(body.reals[at]) + 1)
+    return PackedPcurve(kind, first, last, body.reals[at : at + count].reshape(-1, 3))
+
+
 def coedges_of(body: PackedParts) -> list[tuple[int, int, int]]:
     """(number, chart, edge) of every coedge; the edge of a collapsed side is -1 - vertex."""
     found = []
     for chart in range(int(body.ints[L.N_CHARTS])):
-        row = chart_row(body, chart)
-        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-        for k in range(first, first + count):
+        for k in coedge_range(body, chart):
             start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
             found.append((k, chart, int(body.ints[start + L.COEDGE_EDGE])))
     return found
@@ -127,14 +153,10 @@ def surface_of(body: PackedParts, charts: tuple[Surface, ...], chart: int) -> Su
 
 def chart_outline(body: PackedParts, chart: int) -> Array:
     """Points of a chart's trimming curves in (u, v), (n, 2), as far as the chart shows them."""
-    row = chart_row(body, chart)
-    first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
     spots = []
-    for k in range(first, first + count):
-        start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * k
-        offset = int(body.ints[start + L.COEDGE_REALS])
-        low, high = body.reals[offset + L.PCURVE_FIRST], body.reals[offset + L.PCURVE_LAST]
-        for t in np.linspace(low, high, ALONG):
+    for k in coedge_range(body, chart):
+        curve = packed_pcurve(body, k)
+        for t in np.linspace(curve.first, curve.last, ALONG):
             u, v, _, _, depth = coedge_parameters(body.ints, body.reals, k, t)
             if depth > 0.0:
                 spots.append((u, v))

@@ -17,22 +17,7 @@ if TYPE_CHECKING:
     )
     from standoff.errors import CadError
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.cad.assembly": ("Assembly", "Part", "PartReport"),
-            "standoff.errors": ("CadError",),
-            "standoff.cad.reading": (
-                "common_volumes",
-                "from_shape",
-                "read_brep",
-                "read_cad",
-                "read_iges",
-                "read_step",
-                "reports_of",
-            ),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Assembly",

@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 
-try:
+with of_extra("OpenCASCADE", "cad"):
     import OCP  # noqa: F401
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("OpenCASCADE", "cad"), name=error.name) from error
 
 from OCP.TopAbs import (
     TopAbs_EDGE,

@@ -9,13 +9,6 @@ if TYPE_CHECKING:
     from standoff.clearance.fits import Fit, load_fits
     from standoff.clearance.report import Report, Wanted
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.clearance.checked_pairs": ("Scope", "check"),
-            "standoff.clearance.fits": ("Fit", "load_fits"),
-            "standoff.clearance.report": ("Report", "Wanted"),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = ["Fit", "Report", "Scope", "Wanted", "check", "load_fits"]

@@ -26,18 +26,15 @@ from standoff.clearance.picture import (
 )
 from standoff.clearance.report import Report, Row
 from standoff.clearance.verdicts import Verdict
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.colors import to_rgb
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
-except ModuleNotFoundError as error:
-    from standoff.errors import not_installed
-
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 EDGE = "0.25"
 """Colour of the parts' edges."""

@@ -9,15 +9,13 @@ import numpy as np
 from standoff.clearance.matrix import ABOVE, BELOW, BESIDE, draw_matrix, side_of
 from standoff.clearance.over_time import Walked
 from standoff.clearance.report import Report
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.wording import short_name
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 HEIGHT, TOP, GAP = 2.6, 0.5, 0.75
 """Inches: of the curve's panel, above it, and below it for its axis."""

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from standoff.clearance.report import Report
 from standoff.clearance.verdicts import Verdict
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.wording import at_least, short_name
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib import colormaps
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
@@ -20,8 +20,6 @@ try:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch, Rectangle
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 MOST_BODIES = 60
 """Names that fit on an axis; of more bodies those of the worst pairs are drawn."""
@@ -39,7 +37,7 @@ LEAST = 6
 """Cells that the figure has room for, however few bodies there are."""
 
 OVERLAP_COLOUR, UNDECIDED_COLOUR, TOUCH_COLOUR = "#D55E00", "#CC79A7", "#E69F00"
-FAR_COLOUR, FAR_HATCH, LEFT_OUT_COLOUR = "#EDEDED", "////", "white"
+FAR_COLOUR, FAR_HATCH = "#EDEDED", "////"
 COLOURS = "YlGnBu_r"
 """Of the gaps: dark is near. Okabe and Ito's orange, vermilion and purple are not among them."""
 

@@ -19,16 +19,17 @@ from standoff.bodies.tessellation import EdgeLine
 from standoff.bodies.tolerances import FLAT_CLOUD
 from standoff.clearance.report import Report, Row, gap_text
 from standoff.clearance.verdicts import Verdict
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.motion.vectors import pose_row
 from standoff.solids.planar.loops import points_along
 from standoff.tracking import distance
 from standoff.wording import at_least, at_most, short_name
 from standoff.world import Compound, World
 from standoff.world.shapes import boundary_of
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -37,8 +38,6 @@ try:
     from matplotlib.path import Path
     from matplotlib.patheffects import AbstractPathEffect, withStroke
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 MOST_PAIRS = 5
 """Pairs whose closest points are drawn and numbered."""
@@ -70,7 +69,7 @@ class Part(NamedTuple):
     @property
     def flat(self) -> Array:
         """Its pose (12,), R row-major, p."""
-        return np.concatenate([self.pose.rotation.ravel(), self.pose.translation])
+        return pose_row(self.pose.rotation, self.pose.translation)
 
     @property
     def cloud(self) -> Array:

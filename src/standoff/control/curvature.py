@@ -11,6 +11,7 @@ import scipy
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import charts_of
+from standoff.bodies.tessellation import coedge_range, packed_pcurve
 from standoff.checks.numbers import number
 from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import POLE_AREA, SEARCH_TOLERANCE
@@ -167,13 +168,9 @@ def _samples(body: Body, chart: int) -> Array:
 
 def _sides(body: Body, chart: int) -> Iterator[tuple[float, float]]:
     """Parameters along a chart's trimming curves."""
-    row = int(body.ints[L.CHARTS]) + L.CHART_STRIDE * chart
-    first, count = (int(body.ints[row + k]) for k in (L.CHART_COEDGE, L.CHART_N_COEDGES))
-    for coedge in range(first, first + count):
-        at = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-        reals = int(body.ints[at + L.COEDGE_REALS])
-        low, high = body.reals[reals + L.PCURVE_FIRST], body.reals[reals + L.PCURVE_LAST]
-        for t in np.linspace(low, high, SIDE_POINTS):
+    for coedge in coedge_range(body, chart):
+        curve = packed_pcurve(body, coedge)
+        for t in np.linspace(curve.first, curve.last, SIDE_POINTS):
             u, v = coedge_parameters(body.ints, body.reals, coedge, t)[:2]
             yield float(u), float(v)
 

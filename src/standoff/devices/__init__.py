@@ -11,15 +11,6 @@ if TYPE_CHECKING:
     from standoff.devices.port import LiveDevice, Port
     from standoff.devices.trace import Trace
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.devices.inverse3": ("Inverse3",),
-            "standoff.devices.pointer": ("PointerDevice",),
-            "standoff.devices.polled": ("Polled",),
-            "standoff.devices.port": ("LiveDevice", "Port"),
-            "standoff.devices.trace": ("Trace",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = ["Inverse3", "LiveDevice", "PointerDevice", "Polled", "Port", "Trace"]

@@ -26,7 +26,7 @@ from standoff.devices.tolerances import (
     CONNECTED_WITHIN,
     LONGEST_FRAME,
 )
-from standoff.errors import DeviceError, StandoffTypeError, not_installed
+from standoff.errors import DeviceError, StandoffTypeError, of_extra
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist
 from standoff.simulation.device import DeviceReading, Fault
@@ -127,12 +127,8 @@ class Inverse3(BoundToRun):
             self._thread = None
 
     def _connected(self) -> Any:
-        try:
+        with of_extra("websockets", "devices"):
             from websockets.sync.client import connect
-        except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(
-                not_installed("websockets", "devices"), name="websockets"
-            ) from error
         try:
             return connect(
                 self._url,

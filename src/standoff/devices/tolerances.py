@@ -24,9 +24,6 @@ CLOSED_WITHIN: Final = 0.2
 """Seconds, a time to wait: many times what a service on the same machine takes to say goodbye. One
 that floods the connection never does, and the force was set to zero before."""
 
-SHORTEST_PERIOD: Final = 1e-4
-"""Seconds, parts of one: the shortest period of a device, that of the fastest servo."""
-
 PERIOD_ROUNDING: Final = 1e-9
 """Relative: a trace may fall short of whole periods by this part and still have its last reading:
 the roundoff of its stamps."""

@@ -21,26 +21,7 @@ if TYPE_CHECKING:
     from standoff.geometry.swept import Extrusion, Revolution
     from standoff.geometry.torus import Torus
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.geometry.curves": ("ConicArc", "Curve", "Line", "RationalBezier"),
-            "standoff.geometry.ellipsoid_patches": ("ellipsoid_octants", "ellipsoid_patches"),
-            "standoff.geometry.exact_pcurves": ("pcurve_of",),
-            "standoff.geometry.formulas": ("FormulaCurve", "FormulaError", "FormulaSurface"),
-            "standoff.geometry.nurbs": ("BezierPatch", "NurbsSurface"),
-            "standoff.geometry.nurbs_curves": ("NurbsCurve",),
-            "standoff.geometry.nurbs_pcurves": ("NurbsPcurve",),
-            "standoff.geometry.patch_bounds": ("PatchBounds",),
-            "standoff.geometry.pcurves": ("Pcurve",),
-            "standoff.geometry.superellipsoids": ("SuperellipsoidPole", "SuperellipsoidSide"),
-            "standoff.geometry.surface_curves": ("SurfaceCurve",),
-            "standoff.geometry.quadrics": ("Cone", "Cylinder", "Plane", "Sphere"),
-            "standoff.geometry.surfaces": ("Surface",),
-            "standoff.geometry.swept": ("Extrusion", "Revolution"),
-            "standoff.geometry.torus": ("Torus",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "BezierPatch",

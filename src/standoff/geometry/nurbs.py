@@ -33,7 +33,6 @@ from standoff.geometry.validation import (
     Domain,
     affine_map,
     check_alike,
-    checked_domain,
     inside,
 )
 from standoff.kernels.body import layout as L
@@ -182,10 +181,7 @@ class NurbsSurface(Surface):
         ValueError
             The domain is empty or leaves the present one.
         """
-        smaller = checked_domain((u0, u1, v0, v1), type(self).__name__)
-        a, b, c, d = self.domain
-        if not (a <= smaller[0] and smaller[1] <= b and c <= smaller[2] and smaller[3] <= d):
-            raise StandoffError(f"The domain {smaller} leaves the surface's own, {self.domain}.")
+        smaller = self.smaller_domain(u0, u1, v0, v1)
         surface = object.__new__(type(self))
         for name, value in vars(self).items():
             object.__setattr__(surface, name, value)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from standoff.geometry.bernstein import equal_segments
 from standoff.geometry.interval_vectors import stacked, wave
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.tolerances import BOX_MARGIN
@@ -12,9 +13,10 @@ from standoff.kernels.body import layout as L
 
 # Parts of a conic with varying weight, each bounded separately.
 CONIC_PARTS = 8
+Boxes = tuple[Array, Array]
 
 
-def pcurve_boxes(kind: int, matrix: Array, ends: Array) -> tuple[Array, Array]:
+def pcurve_boxes(kind: int, matrix: Array, ends: Array) -> Boxes:
     """(low, high), each (n, 2), around the parts of a LINE or CONIC of ``Pcurve`` between n + 1
     ascending parameters, where its weight is positive."""
     if kind == L.LINE:
@@ -35,6 +37,14 @@ def pcurve_boxes(kind: int, matrix: Array, ends: Array) -> tuple[Array, Array]:
     lows = np.where(seen, found.lo.reshape(2, *seen.shape), np.inf)
     highs = np.where(seen, found.hi.reshape(2, *seen.shape), -np.inf)
     return lows.min(axis=2).T, highs.max(axis=2).T
+
+
+def equal_boxes(kind: int, matrix: Array, first: float, last: float, parts: int) -> Boxes:
+    """The same of equal parts, also of a Bezier curve, whose points `matrix` then has, over all of
+    its range."""
+    if kind == L.BEZIER:
+        return bezier_box(equal_segments(len(matrix) - 1, parts) @ matrix)
+    return pcurve_boxes(kind, matrix, np.linspace(first, last, parts + 1))
 
 
 def pcurve_bends(kind: int, matrix: Array, ends: Array) -> Array:

@@ -8,16 +8,7 @@ if TYPE_CHECKING:
     from standoff.impact.answer import Impact, ImpactStatus
     from standoff.impact.query import time_of_impact
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.impact.answer": (
-                "Impact",
-                "ImpactStatus",
-            ),
-            "standoff.impact.query": ("time_of_impact",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Impact",

@@ -15,27 +15,7 @@ if TYPE_CHECKING:
     from standoff.motion.twist import Frame, Twist, TwistLike
     from standoff.motion.winding import Helix, Orientation, Spiral
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.motion.bounds": ("Bounded", "BoundedPath", "MotionBounds"),
-            "standoff.motion.paths": (
-                "Carried",
-                "ConstantTwist",
-                "Fixed",
-                "Offset",
-                "Path",
-                "Screw",
-            ),
-            "standoff.motion.pose": ("Pose", "PoseLike"),
-            "standoff.motion.pose_function": ("PoseFunction",),
-            "standoff.motion.poses": ("Poses", "PosesLike"),
-            "standoff.motion.samples": ("PoseSamples",),
-            "standoff.motion.samples_file": ("read_pose_samples",),
-            "standoff.motion.twist": ("Frame", "Twist", "TwistLike"),
-            "standoff.motion.winding": ("Helix", "Orientation", "Spiral"),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Bounded",

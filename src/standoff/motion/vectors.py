@@ -1,4 +1,4 @@
-"""Vectors: products and lengths of single ones, and how a repr writes them."""
+"""Vectors: products and lengths of single ones, and how a repr writes them; a pose as a row."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ def cross(a: FloatArray, b: FloatArray) -> FloatArray:
     a0, a1, a2 = a.tolist()
     b0, b1, b2 = b.tolist()
     return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
+
+
+def pose_row(rotation: FloatArray, translation: FloatArray) -> FloatArray:
+    """(12,): R by rows, p."""
+    return np.concatenate([rotation.ravel(), translation])
 
 
 def length(vector: FloatArray) -> float:

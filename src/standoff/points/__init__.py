@@ -10,15 +10,7 @@ if TYPE_CHECKING:
     from standoff.points.state import PointState
     from standoff.points.tracker import PointTracker
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.points.answer": ("Minimum", "PointCounts", "PointEvent", "PointProximity"),
-            "standoff.points.recording": ("PointRecording", "PointVisit", "record_point"),
-            "standoff.points.state": ("PointState",),
-            "standoff.points.tracker": ("PointTracker",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Minimum",

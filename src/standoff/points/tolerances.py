@@ -31,9 +31,6 @@ ENTRY_INSTANT: Final = 1e-9
 """Part of the tracker's frame in which the automaton outside switches, but hardly moves, when it is
 entered."""
 
-DEPTH_SWITCH_RESOLUTION: Final = 1e-15
-"""Part of the step within which a switch is found; the roundoff of the depths is above it."""
-
 EQUAL_DEPTHS: Final = 1e-11
 """Part of the body's size by which two depths may differ at a switch: roundoff."""
 

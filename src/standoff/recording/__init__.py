@@ -9,20 +9,7 @@ if TYPE_CHECKING:
     from standoff.recording.recording import Recording, open_recording
     from standoff.recording.track import track
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.recording.recorded": (
-                "RecordedEvent",
-                "RunInfo",
-            ),
-            "standoff.recording.recording": (
-                "Recording",
-                "open_recording",
-            ),
-            "standoff.recording.track": ("track",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "RecordedEvent",

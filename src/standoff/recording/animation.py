@@ -17,15 +17,13 @@ from standoff.bodies.drawing.pair_picture import (
     view_across,
 )
 from standoff.bodies.drawing.solids import solid_of
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.recording.recorded import Paths, RecordedFrames
 from standoff.tracking.inputs import flat_pose
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 INTERVAL = 50
 """Time that a picture is shown, ms."""

@@ -7,14 +7,12 @@ from dataclasses import fields
 from typing import Any
 
 from standoff.bodies.plain_data import plain
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.recording.recorded import RecordedFrames
 from standoff.tracking.rows import Counts
 
-try:
+with of_extra("pandas", "pandas"):
     import pandas as pd
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("pandas", "pandas"), name="pandas") from error
 
 NUMBERS = ("time", "distance", "lower_bound", "upper_bound", "rate", "residual")
 VECTORS = ("point_a", "point_b", "normal", "velocity_a", "velocity_b")

@@ -10,19 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.recording.minima_plot import draw_minima
 from standoff.recording.recorded import RecordedFrames
 
-try:
+with of_extra("matplotlib"):
     from matplotlib import colormaps
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 Array = NDArray[np.float64]
 Value = TypeVar("Value")

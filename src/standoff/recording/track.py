@@ -38,9 +38,6 @@ BLOCK = 128
 """Frames of one compiled loop. It is run again up to a frame that needs a look, one with a switch
 or a doubtful answer: shorter blocks would call more often, longer ones repeat more."""
 
-AFTER_A_LOOK = 4
-"""Frames of the compiled loop after such a frame, doubled while none needs a look."""
-
 
 @runtime_checkable
 class Recorded(Protocol):

@@ -22,27 +22,7 @@ if TYPE_CHECKING:
     from standoff.robots.rows import RobotRows
     from standoff.robots.safety_filter import FilterStatus, SafetyFilter, SafeVelocity
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.robots.answer": ("RobotAnswer",),
-            "standoff.robots.batch": ("RobotAnswers",),
-            "standoff.robots.casadi_functions": ("casadi_distance",),
-            "standoff.robots.geoms": ("Geoms",),
-            "standoff.robots.joints": ("JointKind", "Joints"),
-            "standoff.robots.kinematics": ("Kinematics",),
-            "standoff.robots.paths": ("FunctionPath",),
-            "standoff.robots.proof": ("BoxProof", "PathProof", "Span", "Verdict", "Witness"),
-            "standoff.robots.mink_limit": ("MinkLimit",),
-            "standoff.robots.mujoco_contacts": ("MujocoContacts",),
-            "standoff.robots.mujoco_sensor": ("MujocoSensor",),
-            "standoff.robots.pink_barrier": ("PinkBarrier",),
-            "standoff.robots.report": ("GeomReport", "RobotReport"),
-            "standoff.robots.robot": ("Robot",),
-            "standoff.robots.rows": ("RobotRows",),
-            "standoff.robots.safety_filter": ("FilterStatus", "SafeVelocity", "SafetyFilter"),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "BoxProof",

@@ -7,16 +7,14 @@ from typing import Any
 
 from standoff.casadi import NamedCallback, check_name
 from standoff.checks.names import choice
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.frameworks.ambient import NO_THIRD, UNDEFINED
 from standoff.robots.near import check_robot
 from standoff.robots.pairs_by_q import PairsByQ
 from standoff.robots.robot import Robot
 
-try:
+with of_extra("CasADi", "casadi"):
     import casadi
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("CasADi", "casadi"), name=error.name) from error
 
 
 def casadi_distance(

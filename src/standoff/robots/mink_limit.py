@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 
 from standoff.checks.numbers import not_negative, number
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.robots.certify_tolerances import ASKED_CLEARANCE
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
 
-try:
+with of_extra("mink", "mink"):
     from mink.limits import Constraint, Limit
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("mink", "mink"), name=error.name) from error
 
 
 class MinkLimit(Limit):  # type: ignore[misc]

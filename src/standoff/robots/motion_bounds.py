@@ -169,12 +169,6 @@ def least_speed(reaches: Reaches, rates: Array) -> Cut:
     return seen_from(_sums(rates * reaches.w_a, rates * reaches.w_b), reaches)
 
 
-def least_bend(reaches: Reaches, rates: Array, gains: Array) -> Cut:
-    """How much their points are accelerated, together, at speeds and accelerations of the chain's
-    motions (k, n) [length/s²]."""
-    return seen_from(bends(reaches, rates, gains), reaches)
-
-
 def least_way_along(reaches: Reaches, normals: Array, seen: tuple[Seen, Seen], half: Array) -> Cut:
     """How far they can come together along directions (k, 3), from A to B, that stay fixed in the
     cut's frame (length): what each motion by itself does along them, and as much more as the

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError, not_installed
+from standoff.errors import StandoffError, StandoffTypeError, of_extra
 from standoff.motion import Pose
 from standoff.robots.configurations import Configurations
 from standoff.robots.frames import frame, frames, from_wxyz, jacobians_of
@@ -27,10 +27,8 @@ from standoff.robots.report import GIVEN, GeomReport
 from standoff.robots.shapes import Meshes, Source, made_geoms
 from standoff.wording import counted
 
-try:
+with of_extra("MuJoCo", "mujoco"):
     import mujoco
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.robots.mujoco_mixing import Mixed, mixed
 from standoff.robots.mujoco_pairs import watched_pairs
 from standoff.robots.mujoco_robot import model_of, watched
@@ -22,10 +22,8 @@ from standoff.robots.rows import RobotRows
 from standoff.robots.tolerances import CONTACT_HORIZON
 from standoff.world.packed import pieces_of
 
-try:
+with of_extra("MuJoCo", "mujoco"):
     import mujoco
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
 
 Array = NDArray[np.float64]
 

@@ -11,13 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.robots.tolerances import LEAST_FRICTION
 
-try:
+with of_extra("MuJoCo", "mujoco"):
     import mujoco
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
 
 Array = NDArray[np.float64]
 

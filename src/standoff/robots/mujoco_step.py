@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 
-try:
+with of_extra("MuJoCo", "mujoco"):
     import mujoco
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("MuJoCo", "mujoco"), name=error.name) from error
 
 POSITION = (
     mujoco.mj_checkPos,

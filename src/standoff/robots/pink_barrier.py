@@ -8,14 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.numbers import number, positive, whole_number
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
 
-try:
+with of_extra("Pink", "pink"):
     from pink.barriers import Barrier
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pink", "pink"), name=error.name) from error
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError, not_installed
+from standoff.errors import StandoffError, StandoffTypeError, of_extra
 from standoff.robots.configurations import Configurations
 from standoff.robots.frames import jacobians_of
 from standoff.robots.joints import Joints
@@ -23,11 +23,9 @@ from standoff.robots.pinocchio_shapes import Shape, read_shape
 from standoff.robots.report import NO_SUCH_PAIR
 from standoff.robots.shapes import Meshes, Source, made_geoms
 
-try:
+with of_extra("Pinocchio", "pinocchio"):
     import coal  # noqa: F401 - its classes are those of the geometries
     import pinocchio as pin
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,15 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.robots.joints import SINGLE, JointKind, Joints
 from standoff.robots.mimics import Followed, read_as
 from standoff.robots.tolerances import UNLIMITED
 
-try:
+with of_extra("Pinocchio", "pinocchio"):
     import pinocchio as pin
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -8,12 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 
-try:
+with of_extra("Pinocchio", "pinocchio"):
     import coal
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

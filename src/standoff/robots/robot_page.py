@@ -5,20 +5,20 @@ from __future__ import annotations
 import io
 import math
 from base64 import b64encode
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.robots.proof import PathProof
 from standoff.robots.shown_robot import ShownRobot
+from standoff.view.motion_panel import Later
 from standoff.view.moving_world import Course
 from standoff.view.player import Player
 from standoff.view.served import ServedPage
-from standoff.view.server import stop
 from standoff.view.world_panel import Asks, WorldPanel
 from standoff.view.world_stage import WorldStage
 
@@ -52,9 +52,7 @@ class RobotPanel(WorldPanel):
 
     Parameters
     ----------
-    server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     asks : JointAsks
     shown : ShownRobot
     """
@@ -62,7 +60,7 @@ class RobotPanel(WorldPanel):
     def __init__(
         self,
         server: Any,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         asks: JointAsks,
         shown: ShownRobot,
     ) -> None:
@@ -109,10 +107,8 @@ class RobotStage(WorldStage):
 
     Parameters
     ----------
-    server : viser.ViserServer
     panel : RobotPanel
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     shown : ShownRobot
 
     Attributes
@@ -127,7 +123,7 @@ class RobotStage(WorldStage):
         self,
         server: Any,
         panel: RobotPanel,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         shown: ShownRobot,
     ) -> None:
         self.shown, self.q = shown, shown.first
@@ -165,37 +161,21 @@ class RobotPage(ServedPage):
     Parameters
     ----------
     shown : ShownRobot
-    host : str
-        Name or address to bind to.
-    port : int, optional
-        If not given, any that is free.
-
-    Attributes
-    ----------
-    address : str
-        To be opened in a browser; it holds the token of this run.
-    stage : RobotStage
-        What is shown.
+    host, port : as for `ServedPage`
 
     Raises
     ------
     ModuleNotFoundError
-        If viser is not installed, or matplotlib for a proof; the message names the extra.
-    StandoffError
-        If the port is not available.
+        If matplotlib is not installed, for a proof; and as `ServedPage`.
     """
 
     def __init__(
         self, shown: ShownRobot, *, host: str = "127.0.0.1", port: int | None = None
     ) -> None:
         super().__init__(host=host, port=port)
-        try:
+        with self._opening():
             self.panel = RobotPanel(self.server, self._asked.put, self, shown)
             self.stage: RobotStage = RobotStage(self.server, self.panel, self._asked.put, shown)
-        except BaseException:
-            stop(self.server)
-            raise
-        self._begin()
 
     def hand(self, number: int | None) -> None:
         """Give no body the handle."""
@@ -207,12 +187,8 @@ class RobotPage(ServedPage):
 
 def proof_picture(proof: PathProof) -> str:
     """Return the picture of a proof as HTML."""
-    try:
+    with of_extra("", "plot"):
         from standoff.robots.proof_plot import proof_figure
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(
-            not_installed(str(error.name), "plot"), name=error.name
-        ) from error
     file = io.BytesIO()
     figure = proof_figure(proof, width=PROOF_WIDTH, most=PROOF_ROWS)
     figure.savefig(file, format="png", dpi=DOTS)

@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import number, positive
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
 from standoff.robots.rows import RobotRows
 from standoff.robots.tolerances import RATE_LOST
 
-try:
+with of_extra("qpsolvers", "qp"):
     import qpsolvers
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("qpsolvers", "qp"), name=error.name) from error
 
 Array = NDArray[np.float64]
 

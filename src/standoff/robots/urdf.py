@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from standoff.checks.numbers import yes_or_no
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, StandoffTypeError, not_installed
+from standoff.errors import StandoffError, StandoffTypeError, of_extra
 from standoff.robots.loaded import Loaded
 from standoff.robots.mimics import Followed, followed
 from standoff.robots.pinocchio import Reading, assembled
@@ -19,10 +19,8 @@ from standoff.robots.urdf_meshes import stand_ins
 from standoff.robots.urdf_pairs import disabled, pairs_left_out
 from standoff.robots.urdf_xml import UrdfTree, masters, read_tree
 
-try:
+with of_extra("Pinocchio", "pinocchio"):
     import pinocchio as pin
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 FOLDERS_ABOVE = 6
 """Folders above the file in which ``package://`` is sought too: ROS packages are no deeper."""

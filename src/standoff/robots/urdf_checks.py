@@ -6,17 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.robots.joints import Joints
 from standoff.robots.pinocchio_shapes import read_shape
 from standoff.robots.tolerances import SAME_READING
 from standoff.robots.urdf_meshes import Shapes
 from standoff.robots.urdf_xml import ALONG_AXIS, UrdfTree
 
-try:
+with of_extra("Pinocchio", "pinocchio"):
     import pinocchio as pin
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("Pinocchio", "pinocchio"), name=error.name) from error
 
 
 def check_geometry(tree: UrdfTree, geometry: Any, places: dict[str, Any], shapes: Shapes) -> None:

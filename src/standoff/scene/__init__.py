@@ -14,16 +14,7 @@ if TYPE_CHECKING:
     from standoff.scene.scene import Scene, load_scene
     from standoff.scene.settings import TrackSettings
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.scene.errors": ("SceneError",),
-            "standoff.scene.motions": ("Motion",),
-            "standoff.scene.run": ("first_impact", "prepare", "query", "record"),
-            "standoff.scene.scene": ("Scene", "load_scene"),
-            "standoff.scene.settings": ("TrackSettings",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Motion",

@@ -9,13 +9,6 @@ if TYPE_CHECKING:
     from standoff.servo.report import Ended, ServoReport
     from standoff.servo.statistics import ServoStatistics, Spread
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.servo.loop": ("Servo", "Snapshot"),
-            "standoff.servo.report": ("Ended", "ServoReport"),
-            "standoff.servo.statistics": ("ServoStatistics", "Spread"),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = ["Ended", "Servo", "ServoReport", "ServoStatistics", "Snapshot", "Spread"]

@@ -36,57 +36,7 @@ if TYPE_CHECKING:
     from standoff.simulation.system_state import Crossing, Energy, SystemState
     from standoff.simulation.wrench import Wrench
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.simulation.adaptive": ("Solution", "SystemEvent", "solve"),
-            "standoff.simulation.adaptive_bodies": ("SystemSolution",),
-            "standoff.simulation.contact": ("HuntCrossley",),
-            "standoff.simulation.coupler": ("VirtualCoupler",),
-            "standoff.simulation.coupler_run": ("CouplerRun",),
-            "standoff.simulation.coupler_state": ("CouplerCounts", "CouplerState"),
-            "standoff.simulation.device": (
-                "Device",
-                "DeviceLimits",
-                "DeviceReading",
-                "Fault",
-            ),
-            "standoff.simulation.device_readings": ("DeviceReadings",),
-            "standoff.simulation.disturbances": ("Disturbances",),
-            "standoff.simulation.encoder": ("Encoder",),
-            "standoff.simulation.generalised_system": ("GeneralisedSystem",),
-            "standoff.simulation.human_arm": ("HumanArm",),
-            "standoff.simulation.mass_properties": (
-                "MassErrors",
-                "MassProperties",
-                "mass_properties",
-            ),
-            "standoff.simulation.operator": ("Operator",),
-            "standoff.simulation.pair_contacts": ("PairContact", "SpotForce"),
-            "standoff.simulation.passivity": (
-                "Sampling",
-                "largest_stiffness",
-                "required_damping",
-                "required_damping_of",
-            ),
-            "standoff.simulation.passivity_observer": ("PassivityController", "PortEnergy"),
-            "standoff.simulation.rigid_body": ("RigidBody",),
-            "standoff.simulation.simulated_device": (
-                "Mechanism",
-                "ScriptedHand",
-                "SimulatedDevice",
-            ),
-            "standoff.simulation.solid_places": (
-                "ContactPlace",
-                "ContactSpot",
-                "SolidContact",
-            ),
-            "standoff.simulation.system": ("System",),
-            "standoff.simulation.system_run": ("SystemRun",),
-            "standoff.simulation.system_state": ("Crossing", "Energy", "SystemState"),
-            "standoff.simulation.wrench": ("Wrench",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "ContactPlace",

@@ -8,16 +8,14 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.simulation.rigid_body import FIXED
 from standoff.simulation.system_run import SystemRun
 
-try:
+with of_extra("matplotlib"):
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 Array = NDArray[np.float64]
 

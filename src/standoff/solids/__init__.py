@@ -27,35 +27,7 @@ if TYPE_CHECKING:
     from standoff.solids.tracked.state import SolidState
     from standoff.solids.tracked.tracker import SolidTracker
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.recording.local_minima": ("LocalMinima", "MinimumEvent"),
-            "standoff.solids.answer": (
-                "Continuum",
-                "NearestPair",
-                "OpenPair",
-                "Overlap",
-                "SolidCounts",
-                "SolidProximity",
-            ),
-            "standoff.solids.boundary_file": ("open_boundary", "save_boundary"),
-            "standoff.solids.planar.drawing": ("Drawing",),
-            "standoff.solids.planar.dxf": ("read_dxf",),
-            "standoff.solids.planar.solid": ("PlanarSolid",),
-            "standoff.solids.query": ("distance",),
-            "standoff.solids.spatial.points": ("PointDistances",),
-            "standoff.solids.spatial.self_intersections": (
-                "SelfIntersection",
-                "SelfIntersections",
-            ),
-            "standoff.solids.spatial.solid": ("Solid",),
-            "standoff.solids.tracked.answers": ("SolidAnswers",),
-            "standoff.solids.tracked.frame_buffer": ("SolidFrameBuffer",),
-            "standoff.solids.tracked.state": ("SolidState",),
-            "standoff.solids.tracked.tracker": ("SolidTracker",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Continuum",

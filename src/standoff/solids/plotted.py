@@ -43,12 +43,9 @@ class Plotted:
         OSError
             If the file cannot be written.
         """
-        from standoff.bodies.drawing.files import checked_file, write_picture
+        from standoff.bodies.drawing.files import drawn
 
-        target = None if path is None else checked_file(path)
-        figure = self._figure(str(unit))
-        if target is not None:
-            write_picture(figure, target)
+        figure: Figure = drawn(path, lambda: self._figure(str(unit)))
         return figure
 
     @abstractmethod

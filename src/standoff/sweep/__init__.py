@@ -19,24 +19,7 @@ if TYPE_CHECKING:
     from standoff.sweep.run import run_proof, run_sweep
     from standoff.sweep.summary import Summary
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.sweep.estimate": ("Estimate", "estimated"),
-            "standoff.sweep.folder": ("FolderError",),
-            "standoff.sweep.job": ("Job",),
-            "standoff.sweep.keep": ("Bins", "Keep"),
-            "standoff.sweep.proof.effort": ("Effort",),
-            "standoff.sweep.proof.proof": ("Proof",),
-            "standoff.sweep.proof.report": ("ProofReport",),
-            "standoff.sweep.proof.summary": ("Kind", "Places", "ProofSummary"),
-            "standoff.sweep.reading": ("load_job",),
-            "standoff.sweep.report": ("Report",),
-            "standoff.sweep.run": ("run_proof", "run_sweep"),
-            "standoff.sweep.rows": ("Rows",),
-            "standoff.sweep.summary": ("Summary",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Bins",

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.sweep.code import code_facts
 from standoff.sweep.digests import digest_of
 from standoff.sweep.folder import put_text, shard_file
@@ -43,11 +43,8 @@ def made_on_cluster(
     OSError
         If the scheduler cannot be reached, or is lost.
     """
-    try:
+    with of_extra("distributed", "cluster"):
         from distributed import Client
-    except ModuleNotFoundError as error:
-        told = not_installed("distributed", "cluster")
-        raise ModuleNotFoundError(told, name="distributed") from error
     if not missing:
         return
     given = work.token, digest_of(code_facts())

@@ -148,7 +148,7 @@ def moved(home: Pose, body: str, parameters: Sequence[Parameter], numbers: Array
         elif p.what in SHIFTS:
             shift[SHIFTS.index(p.what)] += given[0]
         else:
-            turn = _turned(
+            turn = turned_by(
                 turn, TURNS.index(p.what), np.radians(given[0]) if p.degrees else given[0]
             )
     poses = np.zeros((n, 4, 4))
@@ -157,8 +157,9 @@ def moved(home: Pose, body: str, parameters: Sequence[Parameter], numbers: Array
     return poses
 
 
-def _turned(turn: Array, axis: int, angle: Array) -> Array:
-    """Rotations (3, 3, n), each followed by a turn about an axis of the body."""
+def turned_by(turn: Array, axis: int, angle: Array) -> Array:
+    """Rotations (3, 3, n), each followed by a turn about an axis of the body; or directions as seen
+    from a body that has turned so."""
     found = turn.copy()
     j, k = (axis + 1) % 3, (axis + 2) % 3
     cosine, sine = np.cos(angle), np.sin(angle)

@@ -6,15 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.sweep.report import Report
 from standoff.wording import counted, printable
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 NEAR, FAR, OUTSIDE = "#D55E00", "#56B4E9", "#BBBBBB"
 """Okabe and Ito's vermilion and blue, and grey for what the bins leave out."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.wording import printable
 
 Array = NDArray[np.float64]
@@ -90,11 +90,9 @@ class SampleFile:
             ) from error
 
     def _open_parquet(self) -> None:
-        try:
+        with of_extra("pyarrow"):
             import pyarrow as pa
             import pyarrow.parquet as pq
-        except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(not_installed("pyarrow"), name="pyarrow") from error
         try:
             self._parquet = pq.ParquetFile(self.file)
         except (pa.ArrowException, UnicodeDecodeError) as error:

@@ -33,55 +33,7 @@ if TYPE_CHECKING:
     from standoff.tracking.status import Status
     from standoff.tracking.tracker import Tracker
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.bodies.features": ("Feature",),
-            "standoff.tracking.branches": (
-                "Birth",
-                "Branch",
-                "BranchCounts",
-                "Branches",
-                "Change",
-                "End",
-            ),
-            "standoff.tracking.cold_query": ("distance",),
-            "standoff.tracking.distance_arrays": ("Distances",),
-            "standoff.tracking.many_distances": ("distances",),
-            "standoff.tracking.contact.patches": ("Patch", "Patches"),
-            "standoff.tracking.contact.witness_set": (
-                "WitnessSet",
-                "witness_set",
-            ),
-            "standoff.tracking.derivatives": (
-                "DerivativeArrays",
-                "Derivatives",
-                "Smoothness",
-            ),
-            "standoff.tracking.feedback": ("max_gain",),
-            "standoff.tracking.laws": (
-                "PaperLaw",
-                "PredictorCorrector",
-            ),
-            "standoff.tracking.answers": ("Answers",),
-            "standoff.tracking.pair_plot": ("plot",),
-            "standoff.tracking.pair_system": (
-                "PairSystem",
-                "pair_system",
-            ),
-            "standoff.tracking.proximity": (
-                "Counts",
-                "Event",
-                "Proximity",
-            ),
-            "standoff.tracking.frame_buffer": ("FrameBuffer",),
-            "standoff.tracking.many_states": ("TrackerStates",),
-            "standoff.tracking.state": ("TrackerState",),
-            "standoff.tracking.status": ("Status",),
-            "standoff.tracking.tracker": ("Tracker",),
-        },
-        modules=("feedback",),
-    )
+    __getattr__, __dir__ = on_demand(__name__, modules=("feedback",))
 
 __all__ = [
     "Answers",

@@ -13,6 +13,7 @@ from standoff.bodies.features import feature_of
 from standoff.checks.numbers import whole_number
 from standoff.errors import StandoffError
 from standoff.kernels.state import arrays as K
+from standoff.motion.vectors import pose_row
 from standoff.tracking.answers import AnswerArrays, proven, statuses
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.refused_rows import RefusedRows
@@ -182,8 +183,9 @@ class Distances(AnswerArrays):
             raise self.errors[index]
         block = np.zeros(K.N_BLOCK)
         block[: K.N_OUT] = self.rows[index]
+        poses = [poses[0 if len(poses) == 1 else index] for poses in self.poses]
         block[K.BLOCK_MOTION : K.BLOCK_TIME_STEP] = motion_row(
-            *(_flat(poses[0 if len(poses) == 1 else index]) for poses in self.poses)
+            *(pose_row(pose[:3, :3], pose[:3, 3]) for pose in poses)
         )
         return Proximity(*self._of.of(index), block, int(self.repaired[index]))
 
@@ -200,11 +202,6 @@ class Distances(AnswerArrays):
         names = self._of.shown
         refused = f", {len(self.errors)} refused" if self.errors else ""
         return f"<Distances at {counted(len(self), 'pair')} of poses: {names}{refused}>"
-
-
-def _flat(pose: Array) -> Array:
-    """(12,) R row-major, p."""
-    return np.concatenate([pose[:3, :3].ravel(), pose[:3, 3]])
 
 
 def _features(body: Body, numbers: Array) -> NDArray[np.void]:

@@ -16,7 +16,7 @@ from standoff.kernels.state.arrays import NOT_GIVEN
 from standoff.kernels.tolerances import FARTHEST, PLANE_TILT
 from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.motion.rotations import defect, mirrored, without_rounding
-from standoff.motion.tolerances import ORTHONORMALITY, ROUNDED
+from standoff.motion.tolerances import ROUNDED
 from standoff.tracking.rows import NO_TWIST, motion_row, poses_of, twists_of
 
 Array = NDArray[np.float64]
@@ -105,18 +105,6 @@ def repair(flat: Array, name: str) -> None:
             raise StandoffError(f"{name}: {error}", name, error.value) from error
     # Also of one whose columns pass: the kernel asks of the rows.
     flat[:9] = without_rounding(rotation).ravel()
-
-
-def repair_rows(flats: Array) -> int:
-    """Repair the rounded ones among many flat poses (n, 12), in place; returns how many there
-    were."""
-    rotations = flats[:, :9].reshape(-1, 3, 3)
-    with np.errstate(invalid="ignore", over="ignore"):  # of numbers that the kernel refuses
-        off = defect(rotations)
-        rounded = (off > ORTHONORMALITY) & (off <= ROUNDED)
-    if rounded.any():
-        flats[rounded, :9] = without_rounding(rotations[rounded]).reshape(-1, 9)
-    return int(np.count_nonzero(rounded))
 
 
 def flat_twist(twist: TwistLike | None, pose: PoseLike) -> Array:

@@ -85,12 +85,11 @@ def plot(
             )
     angles = view_angles(view)
     poses = _poses(bodies, answer)
-    from standoff.bodies.drawing.files import checked_file, write_picture
+    from standoff.bodies.drawing.files import drawn
     from standoff.bodies.drawing.pair_picture import Shown, pair_figure
     from standoff.bodies.drawing.solids import solid_of
 
-    target = None if path is None else checked_file(path)
-    drawn = Shown(
+    marks = Shown(
         poses,
         (answer.point_a, answer.point_b),
         answer.normal,
@@ -98,21 +97,17 @@ def plot(
         (answer.feature_a, answer.feature_b),
         answer.status.name,
     )
-    figure = pair_figure((solid_of(a), solid_of(b)), drawn, angles, str(unit))
-    if target is not None:
-        write_picture(figure, target)
+    solids = solid_of(a), solid_of(b)
+    figure: Figure = drawn(path, lambda: pair_figure(solids, marks, angles, str(unit)))
     return figure
 
 
 def _of_solids(
     solid: Pictured, asked: tuple[Any, Any, Any], path: Any, look: tuple[Any, str]
 ) -> Figure:
-    from standoff.bodies.drawing.files import checked_file, write_picture
+    from standoff.bodies.drawing.files import drawn
 
-    target = None if path is None else checked_file(path)
-    figure: Figure = solid.pictured(*asked, *look)
-    if target is not None:
-        write_picture(figure, target)
+    figure: Figure = drawn(path, lambda: solid.pictured(*asked, *look))
     return figure
 
 

@@ -170,10 +170,6 @@ class StateRow:
         self.mode[at : at + 2] = feature, chart
         self.q[at : at + len(parameters)] = parameters
 
-    def descend_from(self, normal: Array) -> None:
-        """Let the next frame begin in contact, at a normal (3,), unit, in A's frame."""
-        self.inside, self.last_normal = 1.0, normal
-
 
 class AnswerRows:
     """Answers as the kernels write them, (..., N_OUT), by name; `data` may be one row or many.

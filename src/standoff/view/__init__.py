@@ -10,14 +10,6 @@ if TYPE_CHECKING:
     from standoff.view.rerun_log import save_rerun
     from standoff.view.video import save_video
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.view.export": ("page_of", "save_page"),
-            "standoff.view.opening": ("view",),
-            "standoff.view.rerun_log": ("save_rerun",),
-            "standoff.view.video": ("save_video",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = ["page_of", "save_page", "save_rerun", "save_video", "view"]

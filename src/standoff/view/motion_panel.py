@@ -14,6 +14,9 @@ PHONE = """<style data-of="phone">@media (max-width: 36em) {
 }</style>"""
 """Viser's panel of a narrow window is 20 em wide, and leaves a strip of the scene beside it."""
 
+Later = Callable[[Callable[[], None]], None]
+"""Takes what is to be done in the page's thread."""
+
 
 class Plays(Protocol):
     """What a user can ask of a motion."""
@@ -36,8 +39,7 @@ class MotionPanel:
     Parameters
     ----------
     server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    later : Later
     asks : Plays
     curves : Curves
         What is plotted.
@@ -46,7 +48,7 @@ class MotionPanel:
     def __init__(
         self,
         server: Any,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         asks: Plays,
         curves: Curves = DISTANCES,
     ) -> None:

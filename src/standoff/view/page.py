@@ -11,7 +11,6 @@ from standoff.scene import Scene, load_scene
 from standoff.view.pair_panel import HANDS
 from standoff.view.panel import Panel
 from standoff.view.served import ServedPage
-from standoff.view.server import stop
 from standoff.view.stage import Stage
 from standoff.world.shapes import is_solid
 
@@ -22,26 +21,14 @@ class Page(ServedPage):
     Parameters
     ----------
     scene : Scene
-    host : str
-        Name or address to bind to.
-    port : int, optional
-        If not given, any that is free.
     others : mapping of str to Path, optional
         Scenes that the page can open besides, by title.
-
-    Attributes
-    ----------
-    address : str
-        To be opened in a browser; it holds the token of this run.
-    stage : Stage
-        What is shown.
+    host, port : as for `ServedPage`
 
     Raises
     ------
-    ModuleNotFoundError
-        If viser is not installed; the message names the extra.
     StandoffError
-        If the port is not available, or the pair cannot be tracked.
+        If the pair cannot be tracked; and as `ServedPage`.
     """
 
     def __init__(
@@ -54,13 +41,9 @@ class Page(ServedPage):
     ) -> None:
         super().__init__(host=host, port=port)
         self._others = {scene.title: scene.file, **(others or {})}
-        try:
+        with self._opening():
             self.panel = Panel(self.server, self._asked.put, self, tuple(self._others))
             self.stage: Stage = Stage(self.server, self.panel, self._asked.put, scene)
-        except BaseException:
-            stop(self.server)
-            raise
-        self._begin()
 
     def hand(self, which: str) -> None:
         """Give the handle to A, to B or to nothing."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
-from standoff.view.motion_panel import MotionPanel, Plays
+from standoff.view.motion_panel import Later, MotionPanel, Plays
 from standoff.view.player import Player
 from standoff.view.tolerances import MAX_TEXT
 
@@ -24,15 +23,11 @@ class PairPanel(MotionPanel):
 
     Parameters
     ----------
-    server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     asks : Hands
     """
 
-    def __init__(
-        self, server: Any, later: Callable[[Callable[[], None]], None], asks: Hands
-    ) -> None:
+    def __init__(self, server: Any, later: Later, asks: Hands) -> None:
         super().__init__(server, later, asks)
         self._hands = asks
         self._names, self._unit, self._size = ("A", "B"), "", 1.0

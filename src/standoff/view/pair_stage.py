@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, Protocol
 
 import numpy as np
 
 from standoff.motion import Fixed, Pose
 from standoff.scene import Scene
+from standoff.view.motion_panel import Later
 from standoff.view.pair_panel import PairPanel
 from standoff.view.picture import PairPicture
 from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player, R
 
 Poses = tuple[Pose, Pose]
-Later = Callable[[Callable[[], None]], None]
 
 
 class Followed(Protocol):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import Any, Protocol
 
 from standoff.view.laws import INTEGRATORS, NAMES
+from standoff.view.motion_panel import Later
 from standoff.view.pair_panel import Hands, PairPanel
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE
@@ -37,9 +38,7 @@ class Panel(PairPanel):
 
     Parameters
     ----------
-    server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     asks : Asks
     titles : sequence of str
         Of the scenes that can be opened.
@@ -48,7 +47,7 @@ class Panel(PairPanel):
     def __init__(
         self,
         server: Any,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         asks: Asks,
         titles: Sequence[str],
     ) -> None:

@@ -21,6 +21,18 @@ class PlayedStage(ABC, Generic[R]):
 
     panel: MotionPanel
     player: Player[R] | None
+    _by_hand = False
+
+    def look(self, elapsed: float) -> None:
+        """Let a time pass [s], and show what has changed."""
+        if self._by_hand:
+            self._follow(elapsed)
+        elif self.player is not None and self.player.playing:
+            self.player.advance(elapsed)
+            self._show_frame(self.player)
+
+    def _follow(self, elapsed: float) -> None:
+        """Show what was moved by hand in a time [s]."""
 
     def play(self, playing: bool) -> None:
         """Play the motion, or pause."""

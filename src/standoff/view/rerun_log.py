@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.bodies.features import Feature
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.recording import Recording
 from standoff.view.nodes import COLOURS, EDGE_COLOUR, WITNESS_COLOUR, Colour
 from standoff.view.shapes import Mesh, Shape, shape_of
@@ -17,10 +17,8 @@ from standoff.view.shown import of_frame, what_moved
 from standoff.view.tolerances import MOST_LOGGED
 from standoff.whole_files import file_name, write_whole
 
-try:
+with of_extra("rerun-sdk", "rerun"):
     import rerun
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("rerun-sdk", "rerun"), name=error.name) from error
 
 CLOCK = "time"
 """Timeline of the motion, s."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import queue
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from traceback import format_exc
 from typing import Any, Protocol, Self
 
@@ -61,7 +61,7 @@ class Staged(Protocol):
 class ServedPage:
     """A page at an address, and the thread that does what is asked of it.
 
-    A subclass makes its panel and stage, and calls `_begin`.
+    A subclass makes its panel and stage in `_opening`.
 
     Parameters
     ----------
@@ -96,8 +96,14 @@ class ServedPage:
         self.port: int = self.server.get_port()
         self.address = access.address(self.port)
 
-    def _begin(self) -> None:
-        """Show the stage, and do from now on what is asked."""
+    @contextmanager
+    def _opening(self) -> Iterator[None]:
+        """Show the stage that is made within, and do from then on what is asked."""
+        try:
+            yield
+        except BaseException:
+            stop(self.server)
+            raise
         self.server.on_client_connect(self.stage_seen)
         self._thread = threading.Thread(target=self._work, name="standoff-page", daemon=True)
         self._thread.start()

@@ -13,11 +13,11 @@ from collections.abc import Awaitable, Callable, Iterator
 from http import HTTPStatus
 from typing import Any
 
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.view.access import Access, Allowance, message_fault, value_fault
 from standoff.view.tolerances import MAX_MESSAGE, MAX_PAGES
 
-try:
+with of_extra("", "view"):
     import msgspec
     import viser as viser
     import websockets
@@ -25,8 +25,6 @@ try:
     from viser import _messages, infra
     from websockets.datastructures import Headers
     from websockets.http11 import Request, Response
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed(str(error.name), "view"), name=error.name) from error
 
 POLICY = "; ".join(
     (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from standoff.simulation.system_run import SystemRun
 from standoff.view.served import ServedPage
-from standoff.view.server import stop
 from standoff.view.shown_simulation import Simulated
 from standoff.view.simulation_panel import SimulationPanel
 from standoff.view.simulation_stage import RunStage, SteppedStage
@@ -17,37 +16,16 @@ class SimulationPage(ServedPage):
     Parameters
     ----------
     given : Simulated
-    host : str
-        Name or address to bind to.
-    port : int, optional
-        If not given, any that is free.
-
-    Attributes
-    ----------
-    address : str
-        To be opened in a browser; it holds the token of this run.
-    stage : RunStage or SteppedStage
-        What is shown.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If viser is not installed; the message names the extra.
-    StandoffError
-        If the port is not available.
+    host, port : as for `ServedPage`, which raises the same
     """
 
     def __init__(
         self, given: Simulated, *, host: str = "127.0.0.1", port: int | None = None
     ) -> None:
         super().__init__(host=host, port=port)
-        try:
+        with self._opening():
             self.panel = SimulationPanel(self.server, self._asked.put, self)
             self.stage: RunStage | SteppedStage = _stage_of(self, given)
-        except BaseException:
-            stop(self.server)
-            raise
-        self._begin()
 
     def step(self) -> None:
         """Show what comes next: a record of a run, or a step of a system."""

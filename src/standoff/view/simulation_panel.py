@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
-from standoff.view.motion_panel import Glazed, MotionPanel, Plays
+from standoff.view.motion_panel import Glazed, Later, MotionPanel, Plays
 from standoff.view.player import Player
 from standoff.view.plot import Curves
 from standoff.view.shown_simulation import Instant
@@ -30,15 +29,11 @@ class SimulationPanel(MotionPanel):
 
     Parameters
     ----------
-    server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     asks : Asks
     """
 
-    def __init__(
-        self, server: Any, later: Callable[[Callable[[], None]], None], asks: Asks
-    ) -> None:
+    def __init__(self, server: Any, later: Later, asks: Asks) -> None:
         super().__init__(server, later, asks, FORCES)
         self._asks = asks
         tabs = server.gui.add_tab_group()

@@ -6,7 +6,6 @@ from standoff.scene import Scene
 from standoff.view.minima_asked import MinimaAsked
 from standoff.view.pair_panel import HANDS
 from standoff.view.served import ServedPage
-from standoff.view.server import stop
 from standoff.view.solid_panel import SolidPanel
 from standoff.view.solid_stage import SolidStage
 
@@ -18,24 +17,12 @@ class SolidPage(ServedPage):
     ----------
     scene : Scene
     asked : MinimaAsked
-    host : str
-        Name or address to bind to.
-    port : int, optional
-        If not given, any that is free.
-
-    Attributes
-    ----------
-    address : str
-        To be opened in a browser; it holds the token of this run.
-    stage : SolidStage
-        What is shown.
+    host, port : as for `ServedPage`
 
     Raises
     ------
-    ModuleNotFoundError
-        If viser is not installed; the message names the extra.
     StandoffError
-        If the port is not available, or the pair cannot be tracked.
+        If the pair cannot be tracked; and as `ServedPage`.
     """
 
     def __init__(
@@ -47,16 +34,12 @@ class SolidPage(ServedPage):
         port: int | None = None,
     ) -> None:
         super().__init__(host=host, port=port)
-        try:
+        with self._opening():
             self.panel = SolidPanel(self.server, self._asked.put, self)
             asked = asked or MinimaAsked()
             self.stage: SolidStage = SolidStage(
                 self.server, self.panel, self._asked.put, scene, asked
             )
-        except BaseException:
-            stop(self.server)
-            raise
-        self._begin()
 
     def hand(self, which: str) -> None:
         """Give the handle to A, to B or to nothing."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
 from standoff.solids.answer import SolidProximity
 from standoff.view.live_solids import known_of
-from standoff.view.motion_panel import Glazed
+from standoff.view.motion_panel import Glazed, Later
 from standoff.view.pair_panel import Hands, PairPanel
 from standoff.view.solid_readout import minima_list, solid_readout
 
@@ -21,15 +20,11 @@ class SolidPanel(PairPanel):
 
     Parameters
     ----------
-    server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     asks : Asks
     """
 
-    def __init__(
-        self, server: Any, later: Callable[[Callable[[], None]], None], asks: Asks
-    ) -> None:
+    def __init__(self, server: Any, later: Later, asks: Asks) -> None:
         super().__init__(server, later, asks)
         tabs = server.gui.add_tab_group()
         with tabs.add_tab("Move"):

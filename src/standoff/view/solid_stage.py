@@ -16,7 +16,8 @@ from standoff.view.live_solids import (
     tracker_of,
 )
 from standoff.view.minima_asked import MinimaAsked
-from standoff.view.pair_stage import Later, PairStage, moving_body
+from standoff.view.motion_panel import Later
+from standoff.view.pair_stage import PairStage, moving_body
 from standoff.view.player import Player
 from standoff.view.server import name_tab
 from standoff.view.solid_panel import SolidPanel
@@ -28,10 +29,8 @@ class SolidStage(PairStage[SolidCourse]):
 
     Parameters
     ----------
-    server : viser.ViserServer
     panel : SolidPanel
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     scene : Scene
     asked : MinimaAsked
 
@@ -81,14 +80,6 @@ class SolidStage(PairStage[SolidCourse]):
         """Show both as if of glass, or only where they overlap."""
         self.picture.glass = on
         self._show(*self._shown)
-
-    def look(self, elapsed: float) -> None:
-        """Let a time pass [s], and show what has changed."""
-        if self._by_hand:
-            self._follow(elapsed)
-        elif self.player is not None and self.player.playing:
-            self.player.advance(elapsed)
-            self._show_frame(self.player)
 
     def _follow(self, elapsed: float) -> None:
         """Put the dragged solid where it is wanted; a frame that was cut short goes on."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from standoff.scene.run import record
 from standoff.tracking import PaperLaw
 from standoff.view import laws
 from standoff.view.live_pair import LivePair
+from standoff.view.motion_panel import Later
 from standoff.view.pair_stage import PairStage, moving_body
 from standoff.view.panel import Panel
 from standoff.view.picture import Picture
@@ -29,10 +29,8 @@ class Stage(PairStage[Recording]):
 
     Parameters
     ----------
-    server : viser.ViserServer
     panel : Panel
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     scene : Scene
     max_force : float
         Greatest force of the coupler [N].
@@ -57,7 +55,7 @@ class Stage(PairStage[Recording]):
         self,
         server: Any,
         panel: Panel,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         scene: Scene,
         max_force: float = MAX_FORCE,
     ) -> None:

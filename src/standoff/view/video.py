@@ -10,7 +10,7 @@ import numpy as np
 
 from standoff.checks.numbers import positive, whole_number
 from standoff.checks.real_numbers import shown
-from standoff.errors import StandoffError, not_installed
+from standoff.errors import StandoffError, of_extra
 from standoff.progress import Progress
 from standoff.recording import Recording
 from standoff.tracking.pair_plot import view_angles
@@ -87,14 +87,11 @@ def check_installed(ending: str) -> None:
     ModuleNotFoundError
         The message names the extra.
     """
-    try:
+    with of_extra("", "video"):
         import matplotlib  # noqa: F401
 
         if ending == ".mp4":
             import imageio_ffmpeg  # noqa: F401
-    except ModuleNotFoundError as error:
-        name = str(error.name).replace("_", "-")
-        raise ModuleNotFoundError(not_installed(name, "video"), name=error.name) from error
 
 
 def write_video(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Protocol
 
-from standoff.view.motion_panel import MotionPanel, Plays
+from standoff.view.motion_panel import Later, MotionPanel, Plays
 from standoff.view.moving_world import Known
 from standoff.view.player import Player
 from standoff.view.tolerances import MAX_TEXT
@@ -25,9 +25,7 @@ class WorldPanel(MotionPanel):
 
     Parameters
     ----------
-    server : viser.ViserServer
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     asks : Asks
     moving : sequence of str
         Names of the bodies that can be dragged.
@@ -36,7 +34,7 @@ class WorldPanel(MotionPanel):
     def __init__(
         self,
         server: Any,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         asks: Asks,
         moving: Sequence[str],
     ) -> None:

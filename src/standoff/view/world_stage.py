@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from standoff.tracking import Status
 from standoff.view.clearance_matrix import matrix_picture
+from standoff.view.motion_panel import Later
 from standoff.view.moving_world import Course, LiveWorld, MovingWorld, course_of, known_of
 from standoff.view.pair_stage import placed
 from standoff.view.played_stage import PlayedStage
@@ -34,10 +34,8 @@ class WorldStage(PlayedStage[Course]):
 
     Parameters
     ----------
-    server : viser.ViserServer
     panel : WorldPanel
-    later : callable
-        Takes what is to be done in the page's thread.
+    server, later : as for `MotionPanel`
     given : MovingWorld
 
     Attributes
@@ -58,7 +56,7 @@ class WorldStage(PlayedStage[Course]):
         self,
         server: Any,
         panel: WorldPanel,
-        later: Callable[[Callable[[], None]], None],
+        later: Later,
         given: MovingWorld,
     ) -> None:
         self.given, self._server, self._later = given, server, later
@@ -121,11 +119,7 @@ class WorldStage(PlayedStage[Course]):
 
     def look(self, elapsed: float) -> None:
         """Let a time pass [s], and show what has changed."""
-        if self._by_hand:
-            self._follow(elapsed)
-        elif self.player is not None and self.player.playing:
-            self.player.advance(elapsed)
-            self._show_frame(self.player)
+        super().look(elapsed)
         self._since += elapsed
         if self._since >= MATRIX_PERIOD:
             self._refresh_matrix()

@@ -15,20 +15,7 @@ if TYPE_CHECKING:
     )
     from standoff.errors import VoronoiError
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.bodies.voronoi": (
-                "BranchEnd",
-                "MedialBranch",
-                "NormalCone",
-                "RegionBoundary",
-                "VoronoiRegions",
-                "voronoi_regions",
-            ),
-            "standoff.errors": ("VoronoiError",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "BranchEnd",

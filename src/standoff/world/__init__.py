@@ -14,19 +14,7 @@ if TYPE_CHECKING:
     from standoff.world.state import WorldState
     from standoff.world.world import World
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.world.answer": ("WorldAnswer",),
-            "standoff.world.compounds": ("Compound", "compound"),
-            "standoff.world.impact": ("WorldImpact",),
-            "standoff.world.pair_answer": ("PairAnswer",),
-            "standoff.world.pair_arrays": ("PairArrays",),
-            "standoff.world.solid_answer": ("SolidPairAnswer",),
-            "standoff.world.state": ("WorldState",),
-            "standoff.world.world": ("World",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "Compound",

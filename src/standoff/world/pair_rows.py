@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
+from standoff.motion.vectors import pose_row
 from standoff.read_only import KeepsReadOnly
 from standoff.world.model import Model
 from standoff.world.packed import pieces_of
@@ -139,10 +140,7 @@ class PairRows(KeepsReadOnly):
 
     def _poses(self, i: int, j: int) -> tuple[Array, Array]:
         """World poses (12,) of two bodies."""
-        a, b = (
-            np.concatenate([self.state.poses[k, :3, :3].ravel(), self.state.poses[k, :3, 3]])
-            for k in (i, j)
-        )
+        a, b = (pose_row(self.state.poses[k, :3, :3], self.state.poses[k, :3, 3]) for k in (i, j))
         return a, b
 
     def _made(self, p: int, q: int, block: Array) -> PairAnswer:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.motion import Pose
+from standoff.motion.vectors import pose_row
 from standoff.solids.answer import Overlap, SolidProximity
 from standoff.solids.inner_ball import ball_inside
 from standoff.solids.of_pieces import OfPieces, answer_of_pieces
@@ -139,7 +140,8 @@ class SolidRows:
         """Asked from nothing, once of all pairs of the same solids that are in one place to each
         other, as those of copies of an assembly are."""
         (a, b), (pose_a, pose_b) = solids, poses
-        place = _row_of(pose_a.inverse() @ pose_b)
+        relative = pose_a.inverse() @ pose_b
+        place = pose_row(relative.rotation, relative.translation)
         known = self._cold.setdefault((id(a), id(b), within), [])
         row, pads = self.frame.placed[pieces[1]], self.frame.placed[list(pieces), W.P_PAD].sum()
         low, high = (row[o : o + 3] - pose_b.translation for o in (W.P_LOW, W.P_HIGH))
@@ -147,7 +149,8 @@ class SolidRows:
         for other, found in known:
             doubt = float(pads) + moved_by(other, place, reach)
             if doubt <= ALIKE_PLACED * size_together(a, b):
-                return found.carried((_row_of(pose_a), _row_of(pose_b)), doubt)
+                rows = [pose_row(p.rotation, p.translation) for p in (pose_a, pose_b)]
+                return found.carried((rows[0], rows[1]), doubt)
         found = distance(a, b, pose_a, pose_b, within=within)
         if found.overlap is None:
             known.append((place, found))
@@ -225,10 +228,7 @@ class SolidRows:
         found = answer_of_pieces(parts, counts, beyond, self._ball)
         chosen = next(part for part in parts if part.names == found.pieces)
         arms = np.array([self._arm(p) for p in (chosen.a + first[i], chosen.b + first[j])])
-        poses = tuple(
-            np.concatenate([self.poses[body, :3, :3].ravel(), self.poses[body, :3, 3]])
-            for body in (i, j)
-        )
+        poses = [pose_row(self.poses[k, :3, :3], self.poses[k, :3, 3]) for k in (i, j)]
         rows_of_bodies = gradient_of_bodies(found.gradient_rows, arms)
         return replace(found, gradient_rows=rows_of_bodies, poses=(poses[0], poses[1]))
 
@@ -277,8 +277,3 @@ class SolidRows:
             twist = self.moment.twists[[i, j], :6].ravel()
             block[K.OUT_RATE] = found.gradient_rows @ twist
         return block
-
-
-def _row_of(pose: Pose) -> Array:
-    """(12,): R by rows, p."""
-    return np.concatenate([pose.rotation.ravel(), pose.translation])

@@ -20,17 +20,15 @@ from standoff.bodies.drawing.body_view import (
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.bodies.tessellation import edge_lines, face_meshes
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 
 def draw_body(

@@ -14,14 +14,12 @@ from numpy.typing import NDArray
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import EdgeLine, FaceMesh
 from standoff.bodies.tolerances import FLAT_CLOUD
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 Space: TypeAlias = Any  # Axes3D, whose type stubs are incomplete
 

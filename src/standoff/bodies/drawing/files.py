@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +33,21 @@ def checked_file(path: object) -> Path:
     return target
 
 
-def write_picture(figure: Any, target: Path) -> None:
-    """Write a figure, whole or not at all."""
-    ending = _ending(target)
-    write_whole({target: lambda file: figure.savefig(file, format=ending)})
+def drawn(path: object, draw: Callable[[], Any]) -> Any:
+    """A figure, also written to a file if one is named, whole or not at all; the name is checked
+    before anything is drawn.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As `checked_file`.
+    """
+    target = None if path is None else checked_file(path)
+    figure = draw()
+    if target is not None:
+        ending = _ending(target)
+        write_whole({target: lambda file: figure.savefig(file, format=ending)})
+    return figure
 
 
 def _ending(target: Path) -> str:

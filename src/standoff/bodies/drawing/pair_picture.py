@@ -10,19 +10,17 @@ from standoff.bodies.drawing.body_view import Space, across, direction_to_viewer
 from standoff.bodies.drawing.solids import Look, Solid, draw_solid
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import without_roundoff
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.wording import short_name
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 # Light and strong shades of Okabe and Ito's blue and vermilion, distinct with any colour vision.
 COLOURS = (("#BBDFF5", "#4FA8DC"), ("#F8D2AE", "#EE8A3C"))

@@ -14,14 +14,12 @@ from standoff.bodies.body import Body
 from standoff.bodies.drawing.body_view import LIGHT, Space, across, seen_points
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import EdgeLine, edge_lines, face_meshes
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.colors import to_rgb
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 DIRECTIONS = 1500
 """Number of directions in which a swept body's surface is drawn."""

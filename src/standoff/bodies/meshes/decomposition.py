@@ -15,7 +15,7 @@ from standoff.bodies.hulls.qhull import hull_triangles
 from standoff.bodies.meshes.columns import Fit, measured
 from standoff.bodies.meshes.mesh import Mesh, read_mesh
 from standoff.checks.numbers import positive, whole_number
-from standoff.errors import BodyError, StandoffError, not_installed
+from standoff.errors import BodyError, StandoffError, of_extra
 from standoff.geometry.validation import Array
 
 
@@ -108,10 +108,8 @@ def _piece(number: int, points: Array, tolerance: float | None, word: str) -> Bo
 
 
 def _split(mesh: Mesh, threshold: float, most: int, seed: int) -> Any:
-    try:
+    with of_extra("CoACD", "meshes"):
         import coacd
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(not_installed("CoACD", "meshes"), name=error.name) from error
     coacd.set_log_level("error")
     # CoACD's own numbers are 32 bits wide
     given = coacd.Mesh(mesh.points, mesh.triangles.astype(np.int32))

@@ -13,7 +13,7 @@ from standoff.bodies.packing import Ints
 from standoff.bodies.tolerances import MESH_CORNER
 from standoff.checks.arrays import finite_rows, numbers
 from standoff.checks.real_numbers import shown
-from standoff.errors import BodyError, StandoffError, StandoffTypeError, not_installed
+from standoff.errors import BodyError, StandoffError, StandoffTypeError, not_installed, of_extra
 from standoff.geometry.validation import Array
 
 # Open edges that one message names.
@@ -147,10 +147,8 @@ def mesh_scene(path: Path) -> Any:
     StandoffError
         A file that it can't read.
     """
-    try:
+    with of_extra("trimesh", "meshes"):
         import trimesh
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(not_installed("trimesh", "meshes"), name=error.name) from error
     if not os.path.isfile(path):
         raise FileNotFoundError(f"There is no mesh file {shown(str(path))}.")
     # else trimesh makes one of all objects of a file

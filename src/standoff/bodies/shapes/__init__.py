@@ -29,28 +29,7 @@ if TYPE_CHECKING:
     from standoff.bodies.shapes.superellipsoids import superellipsoid
     from standoff.geometry.quadrics import sphere_atlas
 else:
-    __getattr__, __dir__ = on_demand(
-        __name__,
-        {
-            "standoff.bodies.shapes.between_poles": ("gore", "spindle"),
-            "standoff.bodies.shapes.eggs": ("egg",),
-            "standoff.bodies.shapes.lenses": ("lens",),
-            "standoff.bodies.shapes.planar": ("planar_loop",),
-            "standoff.bodies.shapes.points_and_sweeps": ("capsule", "point", "segment", "sphere"),
-            "standoff.bodies.shapes.polygons": ("polygon",),
-            "standoff.bodies.shapes.polyhedra": ("box", "polytope", "rounded_polytope"),
-            "standoff.bodies.shapes.quadrics": (
-                "cap",
-                "cone",
-                "cylinder",
-                "ellipsoid",
-                "halfspace",
-            ),
-            "standoff.bodies.shapes.revolved": ("hull_of_revolution",),
-            "standoff.bodies.shapes.superellipsoids": ("superellipsoid",),
-            "standoff.geometry.quadrics": ("sphere_atlas",),
-        },
-    )
+    __getattr__, __dir__ = on_demand(__name__)
 
 __all__ = [
     "box",

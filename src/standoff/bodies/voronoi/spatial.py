@@ -11,7 +11,7 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.charts import surface_normal
 from standoff.bodies.features import Feature
-from standoff.bodies.tessellation import chart_row, coedges_of, surface_of
+from standoff.bodies.tessellation import chart_row, coedges_of, packed_pcurve, surface_of
 from standoff.bodies.topology import Apex
 from standoff.bodies.voronoi.regions import NormalCone, RegionBoundary, VoronoiRegions
 from standoff.bodies.voronoi.tolerances import CORNER_TURN
@@ -97,11 +97,9 @@ def _coedges_by_face(body: Body, j: int) -> dict[int, list[_Coedge]]:
     found: dict[int, list[_Coedge]] = {}
     for number, chart, edge in coedges_of(body):
         if edge == j:
-            start = int(body.ints[L.COEDGES]) + L.COEDGE_STRIDE * number
-            reals = body.reals[int(body.ints[start + L.COEDGE_REALS]) :]
-            span = float(reals[L.PCURVE_FIRST]), float(reals[L.PCURVE_LAST])
+            curve = packed_pcurve(body, number)
             face = int(chart_row(body, chart)[L.CHART_FACE])
-            found.setdefault(face, []).append(_Coedge(number, chart, *span))
+            found.setdefault(face, []).append(_Coedge(number, chart, curve.first, curve.last))
     return found
 
 

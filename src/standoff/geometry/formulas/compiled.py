@@ -12,8 +12,6 @@ import numpy as np
 from standoff.geometry.formulas.programs import Writer, jet_expressions
 from standoff.geometry.validation import Array
 
-VARIABLES = {2: ("u", "v"), 1: ("t",)}
-"""For a surface and for a curve."""
 # Names that the compiled text may use.
 MATH = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan,

@@ -126,11 +126,3 @@ def crossed(piece, x, y):
     if piece.y1 > piece.y0:
         return 1 if area > 0.0 else 0
     return -1 if area < 0.0 else 0
-
-
-@kernel
-def signed_foot(outline, x, y, tolerance, extent):
-    """(signed distance, positive outside; the foot point)."""
-    near = nearest_boundary(outline, x, y, tolerance, extent)
-    inside = winding(outline, x, y, extent) > 0
-    return (-near.distance if inside else near.distance), near

@@ -11,22 +11,19 @@ import scipy
 
 from standoff.bodies.drawing.pair_picture import COLOURS, WITNESS_COLOUR
 from standoff.bodies.plain_data import without_roundoff
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.tolerances import FARTHER, FLAT_BOX
 from standoff.tracking.status import Status
 from standoff.wording import counted
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.colors import to_rgb
     from matplotlib.lines import Line2D
     from matplotlib.patches import Circle, Patch, Polygon
-except ModuleNotFoundError as error:
-    from standoff.errors import not_installed
-
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 Flat = Callable[[Array], Array]
 """From world points (n, 3) to the picture (n, 2)."""

@@ -10,13 +10,14 @@ import numpy as np
 from standoff.bodies.drawing.body_view import FACE_COLOURS, NORMAL_COLOUR, SEAM_COLOUR
 from standoff.bodies.drawing.pair_picture import COLOURS, MARGIN
 from standoff.bodies.features import Feature
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.marks import draw_marks, marks_legend
 from standoff.solids.planar.loops import Loop, points_along
 from standoff.wording import short_name
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -24,10 +25,6 @@ try:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch, PathPatch
     from matplotlib.path import Path
-except ModuleNotFoundError as error:
-    from standoff.errors import not_installed
-
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 
 class Flat(Protocol):

@@ -14,18 +14,15 @@ from standoff.bodies.drawing.body_view import NORMAL_COLOUR, SEAM_COLOUR
 from standoff.bodies.drawing.solids import solid_of
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import EdgeLine
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.solids.drawing.camera import Camera, Raster, brightness, rastered, visible
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.colors import to_rgb
     from matplotlib.lines import Line2D
-except ModuleNotFoundError as error:
-    from standoff.errors import not_installed
-
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 EDGE_LOOKS: dict[str, dict[str, Any]] = {
     EdgeKind.CONVEX: {"color": "black", "linewidth": 1.1},

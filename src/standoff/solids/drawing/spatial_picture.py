@@ -11,6 +11,7 @@ from standoff.bodies.boundary import Boundary, EdgeKind
 from standoff.bodies.drawing.body_view import FACE_COLOURS, VIEWS, round_length
 from standoff.bodies.drawing.pair_picture import COLOURS, USUAL_VIEW
 from standoff.bodies.features import Feature
+from standoff.errors import of_extra
 from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.camera import Camera, camera_on, visible
@@ -26,16 +27,12 @@ from standoff.solids.drawing.skin import (
 )
 from standoff.wording import short_name
 
-try:
+with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
-except ModuleNotFoundError as error:
-    from standoff.errors import not_installed
-
-    raise ModuleNotFoundError(not_installed("matplotlib", "plot"), name="matplotlib") from error
 
 STILL = np.array([1.0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0])
 

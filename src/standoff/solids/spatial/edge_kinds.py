@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from standoff.bodies.boundary import EdgeKind
 from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
+from standoff.bodies.tessellation import coedge_range
 from standoff.bodies.tolerances import SMOOTH_ANGLE
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.patch_bounds import between
@@ -136,8 +137,7 @@ def _sides(boundary: PackedParts) -> list[list[Side]]:
     for chart in range(int(ints[L.N_CHARTS])):
         row = int(ints[L.CHARTS]) + L.CHART_STRIDE * chart
         outward = float(reals[int(ints[row + L.CHART_REALS]) + L.OUTWARD])
-        first, count = int(ints[row + L.CHART_COEDGE]), int(ints[row + L.CHART_N_COEDGES])
-        for coedge in range(first, first + count):
+        for coedge in coedge_range(boundary, chart):
             at = int(ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
             edge = int(ints[at + L.COEDGE_EDGE])
             if edge >= 0:

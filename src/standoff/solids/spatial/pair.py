@@ -15,6 +15,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.kernels.solids.spatial_tolerances import SURE_NORMAL
 from standoff.motion.pose import Pose
+from standoff.motion.vectors import pose_row
 from standoff.solids.answer import NearestPair
 from standoff.solids.spatial.half_space import of_pair
 from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_distance
@@ -63,7 +64,7 @@ class PlacedPair:
         self.ra, self.pa = a.placed(pose_a)
         self.rb, self.pb = b.placed(pose_b)
         rotation = self.ra.T @ self.rb
-        self.relative = np.concatenate([rotation.ravel(), self.ra.T @ (self.pb - self.pa)])
+        self.relative = pose_row(rotation, self.ra.T @ (self.pb - self.pa))
         self.size = a.size + b.size
 
     def in_a(self, points: Array) -> Array:
@@ -76,10 +77,7 @@ class PlacedPair:
     @property
     def frames(self) -> tuple[Array, Array]:
         """World poses (12,) of the frames of both boundaries: R by rows, p."""
-        return (
-            np.concatenate([self.ra.ravel(), self.pa]),
-            np.concatenate([self.rb.ravel(), self.pb]),
-        )
+        return pose_row(self.ra, self.pa), pose_row(self.rb, self.pb)
 
     @property
     def slack(self) -> float:
@@ -89,7 +87,7 @@ class PlacedPair:
     @property
     def poses(self) -> tuple[Array, Array]:
         """World poses (12,) of both as they were given: R by rows, p."""
-        a, b = (np.concatenate([np.ravel(p.rotation), p.translation]) for p in self._given)
+        a, b = (pose_row(p.rotation, p.translation) for p in self._given)
         return a, b
 
     def provable(self, tolerance: float) -> float:

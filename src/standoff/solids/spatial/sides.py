@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff.bodies.tessellation import chart_row
+from standoff.bodies.tessellation import chart_row, coedge_range
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, coedge_parameters, edge_jet
@@ -107,8 +107,7 @@ def _ends_at(
     out: list[Array] = []
     into: list[Array] = []
     normal = None
-    first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-    for coedge in range(first, first + count):
+    for coedge in coedge_range(boundary, chart):
         at = int(ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
         edge = int(ints[at + L.COEDGE_EDGE])
         if edge < 0:
@@ -138,10 +137,8 @@ def charts_at(solid: SolidModel) -> dict[int, list[int]]:
     boundary = solid.boundary
     found: dict[int, list[int]] = defaultdict(list)
     for chart in range(int(boundary.ints[L.N_CHARTS])):
-        row = chart_row(boundary, chart)
-        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
         mine: set[int] = set()
-        for coedge in range(first, first + count):
+        for coedge in coedge_range(boundary, chart):
             at = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
             edge = int(boundary.ints[at + L.COEDGE_EDGE])
             if edge < 0:

@@ -16,8 +16,6 @@ SMOOTH_JOIN: Final = 2e-7
 """Radians: faces that join smoothly may differ by this in their normals, twice SMOOTH_ANGLE."""
 CONTINUUM_LENGTH: Final = 1e-3
 """Of the sizes: nearest pairs spread less than this are one."""
-LEADS_NOWHERE: Final = 1e-6
-"""Length of a sum of unit gradients below which it leads nowhere."""
 COLLAPSED_FRAME: Final = 1e-6
 """Part of a vector across another below which it gives no direction."""
 BENDS_LESS: Final = 3e-3

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.face_leaves import FaceChart
 from standoff.bodies.packed_parts import PackedParts
-from standoff.bodies.tessellation import chart_row
+from standoff.bodies.tessellation import coedge_range, packed_pcurve
 from standoff.geometry.bernstein import segments
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_bends, pcurve_boxes
@@ -99,11 +99,7 @@ def columns_of(pieces: list[Piece]) -> PieceColumns:
 def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece]:
     """The pieces of all trimming curves; on periodic charts with their images a turn away that the
     chart's rectangle reaches."""
-    coedges = []
-    for number in charts:
-        row = chart_row(boundary, number)
-        first, count = int(row[L.CHART_COEDGE]), int(row[L.CHART_N_COEDGES])
-        coedges += [(number, coedge) for coedge in range(first, first + count)]
+    coedges = [(number, k) for number in charts for k in coedge_range(boundary, number)]
     ends = {coedge: _ends(boundary, coedge) for _, coedge in coedges}
     bounds, boxes = _bounds(boundary, ends), _boxes(boundary, ends)
     found = []
@@ -123,9 +119,7 @@ def _edge_of(boundary: PackedParts, coedge: int) -> int:
 
 def _ends(boundary: PackedParts, coedge: int) -> Array:
     """Ascending parameters (n + 1,) that part a packed coedge."""
-    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-    at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
-    first, last = boundary.reals[at : at + L.PCURVE_DATA].tolist()
+    kind, first, last, _ = packed_pcurve(boundary, coedge)
     ends = np.linspace(first, last, PARTS[kind] + 1)
     edge = _edge_of(boundary, coedge)
     curve = boundary.edge_parts[edge].curve if edge >= 0 else None
@@ -172,8 +166,7 @@ def _pieces(
 ) -> list[Piece]:
     """The pieces of a coedge, `of` (chart, coedge)."""
     chart, coedge = of
-    row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-    kind = int(boundary.ints[row + L.COEDGE_KIND])
+    kind = packed_pcurve(boundary, coedge)[0]
     edge = _edge_of(boundary, coedge)
     found = []
     lows, highs, bends = boxes
@@ -194,24 +187,21 @@ def _pieces(
 def _boxes(boundary: PackedParts, ends: dict[int, Array]) -> dict[int, Boxes]:
     """Of packed trimming curves the boxes of parts, of all Bezier ones of a degree at once."""
     found: dict[int, Boxes] = {}
-    alike: dict[int, list[tuple[int, int]]] = {}
+    alike: dict[int, list[tuple[int, Array]]] = {}
     for coedge, ts in ends.items():
-        row = int(boundary.ints[L.COEDGES]) + L.COEDGE_STRIDE * coedge
-        at, kind = int(boundary.ints[row + L.COEDGE_REALS]), int(boundary.ints[row + L.COEDGE_KIND])
-        at += L.PCURVE_DATA
+        kind, _, _, matrix = packed_pcurve(boundary, coedge)
         if kind == L.BEZIER:
-            alike.setdefault(int(boundary.reals[at]), []).append((coedge, at + 1))
+            alike.setdefault(len(matrix), []).append((coedge, matrix))
         else:
-            found[coedge] = _plain_boxes(boundary, kind, at, ts)
-    for degree, group in alike.items():
-        counts = [len(ends[coedge]) - 1 for coedge, _ in group]
-        nets = [boundary.reals[at : at + 3 * degree + 3].reshape(-1, 3) for _, at in group]
-        every = [ends[coedge] for coedge, _ in group]
+            found[coedge] = _plain_boxes(kind, matrix, ts)
+    for n, group in alike.items():
+        every, nets = [ends[coedge] for coedge, _ in group], [net for _, net in group]
+        counts = [len(ts) - 1 for ts in every]
         shares = [(ts - ts[0]) / (ts[-1] - ts[0]) for ts in every]
         first, last = (
             np.concatenate([s[part] for s in shares]) for part in (slice(-1), slice(1, None))
         )
-        parts = segments(degree, first, last) @ np.repeat(nets, counts, axis=0)
+        parts = segments(n - 1, first, last) @ np.repeat(nets, counts, axis=0)
         wide = np.concatenate([np.diff(ts) for ts in every])[:, None]
         rows = *bezier_box(parts), bezier_bend(parts) / wide**2 * (1.0 + BEND_SPARE)
         split = (np.split(each, np.cumsum(counts)[:-1]) for each in rows)
@@ -219,9 +209,8 @@ def _boxes(boundary: PackedParts, ends: dict[int, Array]) -> dict[int, Boxes]:
     return found
 
 
-def _plain_boxes(boundary: PackedParts, kind: int, at: int, ends: Array) -> Boxes:
+def _plain_boxes(kind: int, matrix: Array, ends: Array) -> Boxes:
     """Those of a line or a conic."""
-    matrix = boundary.reals[at : at + 9].reshape(3, 3)
     if (matrix[2, :2] != 0.0).any():
         bends = pcurve_bends(kind, matrix, ends)
     else:

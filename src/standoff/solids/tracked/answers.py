@@ -156,14 +156,14 @@ class SolidAnswers(KeepsReadOnly):
         OSError
             If the file cannot be written.
         """
-        from standoff.bodies.drawing.files import checked_file, write_picture
+        from standoff.bodies.drawing.files import drawn
 
-        target = None if path is None else checked_file(path)
-        from standoff.solids.tracked.plot import minima_figure
+        def draw() -> Figure:
+            from standoff.solids.tracked.plot import minima_figure
 
-        figure = minima_figure(self.minima, self.distance)
-        if target is not None:
-            write_picture(figure, target)
+            return minima_figure(self.minima, self.distance)
+
+        figure: Figure = drawn(path, draw)
         return figure
 
     def __len__(self) -> int:

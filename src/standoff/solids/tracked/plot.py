@@ -8,14 +8,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.errors import not_installed
+from standoff.errors import of_extra
 from standoff.recording.local_minima import LocalMinima
 
-try:
+with of_extra("matplotlib"):
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(not_installed("matplotlib"), name="matplotlib") from error
 
 # Okabe and Ito's colours, told apart by eyes without red or green.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")

@@ -12,6 +12,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.entries.preparing import prepare_tracked_solids
 from standoff.motion import Pose
+from standoff.motion.vectors import pose_row
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
@@ -146,7 +147,8 @@ class SolidTracker(KeepsReadOnly):
             A state of another pair, or no pose.
         """
         self._check(state)
-        a, b = _row(Pose.of(pose_a)), _row(Pose.of(pose_b))
+        poses = Pose.of(pose_a), Pose.of(pose_b)
+        a, b = (pose_row(p.rotation, p.translation)[None] for p in poses)
         return Run(self._asks, state, a, b).single()
 
     def buffer(self, state: SolidState) -> SolidFrameBuffer:
@@ -309,11 +311,6 @@ def untracked(body: SolidModel) -> str:
 def is_tracked(a: Any, b: Any) -> bool:
     """Are two models of solids in space such that a tracker keeps their distance?"""
     return all(isinstance(each, SolidModel) and not untracked(each) for each in (a, b))
-
-
-def _row(pose: Pose) -> Array:
-    """A world pose (1, 12)."""
-    return np.concatenate([pose.rotation.ravel(), pose.translation])[None]
 
 
 def _read(given: Any, name: str) -> Array:

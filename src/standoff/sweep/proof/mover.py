@@ -23,7 +23,7 @@ from standoff.bodies.body import Body
 from standoff.impact.moment import Box
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
-from standoff.sweep.parameters import SHIFTS, TURNS, Parameter
+from standoff.sweep.parameters import SHIFTS, TURNS, Parameter, turned_by
 from standoff.sweep.proof.extent import farthest
 from standoff.sweep.proof.growth import Growth
 from standoff.sweep.proof.tolerances import SQUARE_ROUNDINGS
@@ -160,7 +160,7 @@ class Mover:
             sine = np.sin(np.minimum(half[:, k], np.pi) / 2.0)
             alone[k] = 2.0 * np.arcsin(np.minimum(1.0, sine * across))
             whole = whole + alone[k]
-            seen = _seen_after(seen, axis, at[:, k])
+            seen = turned_by(seen, axis, at[:, k])
         return whole, alone
 
     def taken(self, support: Array, angle: Array) -> Array:
@@ -171,13 +171,3 @@ class Mover:
         more = s * np.cos(angle) + square * np.sin(angle) - s
         added: Array = np.where(s >= self.far * np.cos(angle), self.far - s, more)
         return added
-
-
-def _seen_after(seen: Array, axis: int, angle: Array) -> Array:
-    """Return directions as seen from a body that has turned about one of its axes."""
-    found = seen.copy()
-    j, k = (axis + 1) % 3, (axis + 2) % 3
-    cosine, sine = np.cos(angle), np.sin(angle)
-    found[:, j] = cosine * seen[:, j] + sine * seen[:, k]
-    found[:, k] = cosine * seen[:, k] - sine * seen[:, j]
-    return found

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.motion import Pose
+from standoff.motion.vectors import pose_row
 from standoff.sweep.rows import NO_PAIR, Rows
 from standoff.tracking.answers import PROVEN
 from standoff.tracking.status import Status
@@ -91,6 +92,6 @@ def drawn_answer(world: World, answer: Any) -> Any:
         body = world.bodies[name]
         if isinstance(body, PieceUnion) and piece:
             within = Pose(pose[:9].reshape(3, 3), pose[9:]) @ body.pieces[piece].pose
-            pose = np.concatenate([within.rotation.ravel(), within.translation])
+            pose = pose_row(within.rotation, within.translation)
         poses.append(pose)
     return replace(answer, poses=(poses[0], poses[1]))

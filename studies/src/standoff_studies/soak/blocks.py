@@ -6,14 +6,11 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from multiprocessing import get_context
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, ClassVar, Self
 
 from standoff.cli.terminal import tell
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
 
 TELL = 30.0
 """Seconds between two lines."""
@@ -22,13 +19,22 @@ TOLD = 40
 
 
 Work = Callable[[int], tuple[Any, list[str]]]
-Counts = TypeVar("Counts", bound="DataclassInstance")
 
 
-def added(one: Counts, other: Counts) -> Counts:
-    """Two verdicts as one, count by count."""
-    names = [each.name for each in fields(one)]
-    return type(one)(**{name: getattr(one, name) + getattr(other, name) for name in names})
+@dataclass(frozen=True)
+class Counted:
+    """A verdict in counts, none of which a subclass names among its `FAULTS` may be above 0."""
+
+    FAULTS: ClassVar[tuple[str, ...]] = ("wrong",)
+
+    @property
+    def sound(self) -> bool:
+        return not any(getattr(self, name) for name in self.FAULTS)
+
+    def plus(self, other: Self) -> Self:
+        """Two verdicts as one, count by count."""
+        names = [each.name for each in fields(self)]
+        return type(self)(**{name: getattr(self, name) + getattr(other, name) for name in names})
 
 
 def options(description: str | None, noun: str, count: int, size: int) -> argparse.ArgumentParser:

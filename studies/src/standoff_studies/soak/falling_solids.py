@@ -104,10 +104,11 @@ SCENES = [(shape, ground) for ground in GROUNDS for shape in SHAPES]
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Counts of drops, of those that fell through, of ticks not certified, and of places that ended
     deep; the greatest rise of the energy's balance, of the energy of the drop; and seconds."""
 
+    FAULTS = ("fell",)
     drops: int = 0
     fell: int = 0
     uncertified: int = 0
@@ -115,13 +116,6 @@ class Verdict:
     crossings: int = 0
     gained: int = 0
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not self.fell
-
-    def plus(self, other: Verdict) -> Verdict:
-        return blocks.added(self, other)
 
     def __str__(self) -> str:
         return (

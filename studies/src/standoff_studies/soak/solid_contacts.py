@@ -51,7 +51,7 @@ FIRST_STEP, HALVINGS = 4e-3, 8
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Counts of ticks, of those whose answers were not certified, of those that may have crossed
     something, and of places that ended deep; of samples, of those that overlap, and of those that
     are wrong; of minima of samples, and of those that no place was; and seconds."""
@@ -66,13 +66,6 @@ class Verdict:
     minima: int = 0
     lost: int = 0
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not self.wrong
-
-    def plus(self, other: Verdict) -> Verdict:
-        return blocks.added(self, other)
 
     def __str__(self) -> str:
         each = 1e6 * self.seconds / max(self.ticks, 1)

@@ -66,7 +66,7 @@ class Case(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Counts of ticks, of those that were not certified, and of places that ended deep; of samples,
     of those that overlap, and of those that are wrong; and seconds."""
 
@@ -77,13 +77,6 @@ class Verdict:
     overlaps: int = 0
     wrong: int = 0
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not self.wrong
-
-    def plus(self, other: Verdict) -> Verdict:
-        return blocks.added(self, other)
 
     def __str__(self) -> str:
         each = 1e6 * self.seconds / max(self.ticks, 1)

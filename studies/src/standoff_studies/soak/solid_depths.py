@@ -67,7 +67,7 @@ class Drawn(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Poses; those that are wrong; of what is known to be true the shares that are proven, their
     logarithms' histogram, in percent; and seconds."""
 
@@ -76,13 +76,6 @@ class Verdict:
     shares: tuple[float, ...] = ()
     ways: tuple[float, ...] = ()
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not self.wrong
-
-    def plus(self, other: Verdict) -> Verdict:
-        return blocks.added(self, other)
 
     def __str__(self) -> str:
         low, high = (np.percentile(x or (np.nan,), [50, 10]) for x in (self.shares, self.ways))

@@ -51,12 +51,13 @@ SAMPLED = 0.5
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Counts of frames, of those of each status, of leaps farther than the distance, and of sampled
     frames; of samples that are wrong, and of those that are so certified; of frames that were told
     otherwise in place; of sampled minima, and of those of them that were not told; and seconds of
     all frames."""
 
+    FAULTS = ("wrong", "otherwise", "lost")
     frames: int = 0
     statuses: Counter[str] = field(default_factory=Counter)
     leaps: int = 0
@@ -67,13 +68,6 @@ class Verdict:
     minima: int = 0
     lost: int = 0
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not (self.wrong or self.otherwise or self.lost)
-
-    def plus(self, other: Verdict) -> Verdict:
-        return blocks.added(self, other)
 
     def __str__(self) -> str:
         return (

@@ -16,7 +16,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -53,11 +53,12 @@ STILL = np.eye(4)
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Counts of frames, of those of each status, of sampled and of judged ones; of samples that
     are wrong, and of those that are so certified; of sampled minima, and those of them that were
     not told; frames asked from nothing; and seconds of all frames."""
 
+    FAULTS = ("wrong", "lost")
     frames: int = 0
     statuses: Counter[str] = field(default_factory=Counter)
     sampled: int = 0
@@ -68,14 +69,6 @@ class Verdict:
     lost: int = 0
     restarts: int = 0
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not (self.wrong or self.lost)
-
-    def plus(self, other: Verdict) -> Verdict:
-        names = [each.name for each in fields(self)]
-        return Verdict(**{name: getattr(self, name) + getattr(other, name) for name in names})
 
     def __str__(self) -> str:
         each = 1e6 * self.seconds / max(self.frames, 1)

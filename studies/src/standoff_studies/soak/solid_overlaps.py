@@ -47,7 +47,7 @@ INSIDE = 1e-7
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Verdict(blocks.Counted):
     """Counts of frames, of those of each status, of sampled ones, and of those of them that are
     wrong; of minima of samples, of those that a frame did not tell, and of those it told besides;
     of samples in overlap that a shift is proven to part; of frames asked from nothing; and seconds
@@ -64,13 +64,6 @@ class Verdict:
     parted: int = 0
     restarts: int = 0
     seconds: float = 0.0
-
-    @property
-    def sound(self) -> bool:
-        return not self.wrong
-
-    def plus(self, other: Verdict) -> Verdict:
-        return blocks.added(self, other)
 
     def __str__(self) -> str:
         each = 1e6 * self.seconds / max(self.frames, 1)

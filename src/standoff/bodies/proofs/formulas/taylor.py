@@ -25,6 +25,7 @@ from standoff.bodies.proofs.tolerances import QUOTIENT_ROUNDOFF
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.series_program import SeriesProgram
+from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.series import Series, powers
 from standoff.geometry.validation import Array
@@ -200,14 +201,10 @@ def normal(e: Expansion) -> Bounded:
     n = _tangents(e)[2]
     rows = [e.bounds(s) for s in n]
     slopes = [e.slopes(s) for s in n]
-    value, middle = (_stacked([r[k] for r in rows]) for k in (0, 1))
+    value, middle = (stacked([r[k] for r in rows]) for k in (0, 1))
     if e.pole is not None and e.pole.inward < 0:
         value, middle = _flipped(value), _flipped(middle)
-    return value, middle, [_stacked([s[k] for s in slopes]) for k in (0, 1)]
-
-
-def _stacked(rows: list[Interval]) -> Interval:
-    return Interval(np.stack([r.lo for r in rows]), np.stack([r.hi for r in rows]))
+    return value, middle, [stacked([s[k] for s in slopes]) for k in (0, 1)]
 
 
 def _forms(e: Expansion) -> tuple[list[Series], Any, Any]:
@@ -244,7 +241,7 @@ def curvature(e: Expansion) -> Bounded:
     scale = [1.0 / size**4, 1.0 / size**3]
     slopes = [e.slopes(gauss), e.slopes(mean)]
     by_axis = [
-        _stacked([s[k] * interval(c) for s, c in zip(slopes, scale, strict=True)]) for k in (0, 1)
+        stacked([s[k] * interval(c) for s, c in zip(slopes, scale, strict=True)]) for k in (0, 1)
     ]
     middles = pairs[1] if e.pole is None else _sharper(pairs[1], curvature(e.at_middles())[1])
     return pairs[0], middles, by_axis
@@ -273,7 +270,7 @@ def _ratios(
             w = (e.away, e.to_middle)[which][e.pole.axis]
             w = _flipped(w) if outwards else w
             k, h = _over(_flipped(k) if outwards else k, w), _over(h, w**2)
-    return _stacked([k, h, side])
+    return stacked([k, h, side])
 
 
 def _over(x: Interval, w: Interval) -> Interval:
