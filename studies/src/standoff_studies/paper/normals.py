@@ -48,6 +48,8 @@ AT_EACH_ANGLE = 100
 APART, INSIDE = 1.0, -0.05
 """Distances of the starts at angles [length]."""
 NEAR_ANGLE = 0.3
+SELDOM = 0.1
+"""Share of the starts below which what they do is told as seldom."""
 """Angle of the starts whose steps are counted [rad]."""
 
 FRAME = 2e-3
@@ -219,11 +221,18 @@ def _roots(study: Study) -> Statement:
     )
 
 
+def _often(runs: ArrayLike) -> str:
+    """How many of some runs did it, in a word: which of them did depends on the last bits."""
+    share = float(np.mean(runs))
+    return "never" if share == 0.0 else "seldom" if share < SELDOM else "often"
+
+
 def _in_penetration(study: Study) -> Statement:
     paper, normals = study.fates[PAPER, INSIDE], study.fates[NORMALS, INSIDE]
     return _measured(
-        f"d = {INSIDE:g}, {STARTS} starts: (1)–(4) end at the witness points in "
-        f"{paper.found.mean():.1%}, at ΔR = 0 in {paper.meeting.mean():.0%}; the normals' set in "
+        f"d = {INSIDE:g}, {STARTS} starts: (1)–(4) {_often(paper.found)} end at the witness "
+        f"points, at ΔR = 0 {_often(paper.meeting)}; the normals' set {_often(normals.found)} and "
+        f"{_often(normals.meeting)}: {paper.found.mean():.1%}, {paper.meeting.mean():.0%}, "
         f"{normals.found.mean():.0%} and {normals.meeting.mean():.0%}",
         "every point where the surfaces intersect solves (1)–(4); the normals' set asks for "
         "parallel normals there too",
