@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from standoff.geometry.validation import Array
 from standoff_studies.paper import style
@@ -221,9 +221,9 @@ def _roots(study: Study) -> Statement:
     )
 
 
-def _often(runs: ArrayLike) -> str:
+def _often(runs: NDArray[np.bool_]) -> str:
     """How many of some runs did it, in a word: which of them did depends on the last bits."""
-    share = float(np.mean(runs))
+    share = float(runs.mean())
     return "never" if share == 0.0 else "seldom" if share < SELDOM else "often"
 
 
