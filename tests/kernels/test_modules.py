@@ -100,6 +100,29 @@ def test_stock_compilation_gives_the_same_bits_and_keeps_apart_in_one_cache(
     assert jets(copied) == ("True", values)
 
 
+BEGUN = """
+import gc
+import numpy as np
+from standoff.kernels.compiler.modules import Part
+from standoff.kernels.entries import queries
+kernels = [each for each in gc.get_objects() if isinstance(each, Part)]
+data = np.arange(1.0, 40.0)
+data.flags.writeable = False
+queries.curve_jet(data, 0, 0, 0.3)
+print(len(kernels), sum(kernel._begun for kernel in kernels))
+"""
+
+
+def test_no_kernel_is_begun_where_its_entry_is_on_disk(compiled: tuple[Path, str]) -> None:
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(compiled[0])}
+    run = subprocess.run(
+        [sys.executable, "-c", BEGUN], capture_output=True, text=True, env=environment, check=True
+    )
+    made, begun = map(int, run.stdout.split())
+    assert made > 100
+    assert begun == 0
+
+
 def test_only_entries_and_shared_kernels_are_emitted_and_kept(compiled: tuple[Path, str]) -> None:
     kept = {file.name.split("-")[0] for file in compiled[0].rglob("*.nbi")}
     assert kept == {"queries.curve_jet", "queries.surface_jet"}

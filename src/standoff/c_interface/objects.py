@@ -57,9 +57,7 @@ def compiled_libraries(progress: Progress) -> tuple[dict[str, str], list[Any]]:
     ]
     for symbol, frame in [*zip(smooth_symbols(), SMOOTH_FRAMES, strict=True), *LAWS.items()]:
         # the frame itself, without what lets Python call it
-        bare = modules.Part(
-            frame.py_func, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler
-        )
+        bare = modules.Part(frame.py_func, CONTRACTED, modules.SharedCompiler)
         asked.append((symbol, bare, RECORD_AND_STEP))
     for done, (symbol, kernel, signature) in enumerate(asked):
         progress(done, len(asked))

@@ -60,7 +60,7 @@ def _part(function, **options):
     if not modules.AVAILABLE:
         del options["nopython"]  # njit sets it, and warns of what is told twice
         return njit(**options)(function)
-    made = modules.Part(function, targetoptions=options, pipeline_class=modules.PartCompiler)
+    made = modules.Part(function, options, modules.PartCompiler)
     made.cache_of_calls = ModuleCache(function, called=True)
     return made
 
@@ -69,8 +69,8 @@ def shared(function):
     """Compile a large kernel, which several entries call, as a module of its own."""
     if config.DISABLE_JIT or not modules.AVAILABLE:
         return _part(function)
-    made = modules.Part(function, targetoptions=CONTRACTED, pipeline_class=modules.SharedCompiler)
-    made._cache = ModuleCache(function)
+    made = modules.Part(function, CONTRACTED, modules.SharedCompiler)
+    made.cache = ModuleCache(function)
     made.cache_of_calls = ModuleCache(function, called=True)
     return made
 
