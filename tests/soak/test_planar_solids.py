@@ -79,6 +79,28 @@ def test_points_and_sides(disc, block):
         assert planar_truth.roughly_holds(outline, 0.1, -0.3)
 
 
+def test_sides_are_told_nearer_to_a_curve_than_its_samples_are(disc):
+    angles = np.linspace(0.01, 6.27, 50)
+    off = {-1e-9: [], 1e-9: []}
+    for beyond, coarse in off.items():
+        for x, y in (0.5 + beyond) * np.column_stack([np.cos(angles), np.sin(angles)]):
+            assert planar_truth.holds_finely(disc.outline, x, y) == (beyond < 0.0)
+            coarse.append(planar_truth.holds(disc.outline, x, y))
+    assert not all(off[-1e-9])
+
+
+def test_a_ball_inside_both_proves_an_overlap_wherever_the_descents_end(disc):
+    poses = planar_pose(0.0, 0.0, 0.0), planar_pose(1.0 - 1e-6, 0.0, 0.3)
+    told = distance(disc.solid, disc.solid, *poses)
+    true = planar_judge.truth_of(disc, disc, *poses)._replace(least=1e-7)
+    assert told.status is so.Status.OVERLAPPING
+    assert planar_judge.faults_of(disc, disc, *poses, told, true) == []
+    off = told.overlap.common_point + np.array([0.0, 1e-2, 0.0])
+    told = replace(told, overlap=told.overlap._replace(common_point=off))
+    kinds = [name for name, _ in planar_judge.faults_of(disc, disc, *poses, told, true)]
+    assert kinds == ["status", "ball", "ball"]
+
+
 def test_rows_are_the_curves_of_the_library(rng):
     """All four kinds, by both formulas, at the ends and between."""
     seen = set()

@@ -84,9 +84,12 @@ def faults_of(
 ) -> list[tuple[str, str]]:
     """(kind, what was expected and told) of each fault; none if the answer is right."""
     noise = NOISE * true.extent
-    found = _status_faults(told, true)
     if told.status is so.Status.OVERLAPPING:
-        return found + _ball_faults(a, b, pose_a, pose_b, told, true)
+        # a ball inside both proves it, wherever the descents between the boundaries have ended
+        free = _free(a, b, pose_a, pose_b, told)
+        found = [] if min(free) > ON_IT * true.extent else _status_faults(told, true)
+        return found + _ball_faults(told, true, free)
+    found = _status_faults(told, true)
     clear = true.seen > 2.0 * true.reach
     if told.lower_bound > true.least + noise:
         found.append(("bound", f"lower {told.lower_bound!r} above {true.least!r}"))
@@ -155,8 +158,29 @@ def _witness_faults(
     return found
 
 
+def _free(
+    a: Judged, b: Judged, pose_a: so.Pose, pose_b: so.Pose, told: SolidProximity
+) -> tuple[float, float]:
+    """How far the middle of the common ball is inside A and B, negative outside; minus infinity
+    without a ball."""
+    if told.overlap is None:
+        return -np.inf, -np.inf
+    middle = told.overlap.common_point
+    in_a, in_b = (
+        _inside_by(one, *_frame(pose, middle)) for one, pose in ((a, pose_a), (b, pose_b))
+    )
+    return in_a, in_b
+
+
+def _inside_by(one: Judged, x: float, y: float) -> float:
+    free = float(planar_truth.to_boundary(one.outline, x, y))
+    clear = free > 2.0 * one.outline.reach
+    holds = planar_truth.holds if clear else planar_truth.holds_finely
+    return free if holds(one.outline, x, y) else -free
+
+
 def _ball_faults(
-    a: Judged, b: Judged, pose_a: so.Pose, pose_b: so.Pose, told: SolidProximity, true: Truth
+    told: SolidProximity, true: Truth, free: tuple[float, float]
 ) -> list[tuple[str, str]]:
     """A ball inside both, no larger than half the depth, and a way out."""
     spare = ON_IT * true.extent
@@ -170,11 +194,7 @@ def _ball_faults(
         found.append(("ball", f"radius {radius!r}, distance {told.distance!r}"))
     if not -np.inf < told.lower_bound <= told.distance:
         found.append(("ball", f"lower bound {told.lower_bound!r}"))
-    for one, pose in ((a, pose_a), (b, pose_b)):
-        spot = _frame(pose, told.overlap.common_point)
-        free = float(planar_truth.to_boundary(one.outline, *spot))
-        if free < radius - spare:
-            found.append(("ball", f"radius {radius!r}, but a boundary is at {free!r}"))
-        if free > 2.0 * one.outline.reach and not planar_truth.holds(one.outline, *spot):
-            found.append(("ball", f"the middle is outside, by {free!r}"))
+    for name, inside in zip("AB", free, strict=True):
+        if inside < radius - spare:
+            found.append(("ball", f"radius {radius!r}, but its middle is {inside!r} inside {name}"))
     return found

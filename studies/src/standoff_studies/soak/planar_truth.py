@@ -26,6 +26,8 @@ FIRST_DAMPING = 1e-3
 """Relative."""
 LEAST_BESIDE = 1e-6
 """Of a piece: how near to the end of a descent others begin."""
+FINE = 20_000
+"""Parts of a chord near a point: how far a curve is off them is a reach by the square of this."""
 MOST_STARTS = 400
 """Pairs of samples that are descended from; those of the nearest runs."""
 
@@ -305,6 +307,30 @@ def holds(a, x, y):
             qx, qy = a.samples[p + 1, 0], a.samples[p + 1, 1]
             if (py > y) != (qy > y) and x < px + (y - py) / (qy - py) * (qx - px):
                 odd = not odd
+    return odd
+
+
+@njit(cache=True, error_model="numpy")
+def holds_finely(a, x, y):
+    """The same of a point that may be near the boundary: where samples are within three reaches of
+    it the curve is followed in `FINE` steps between them."""
+    odd = False
+    for k in range(len(a.loops) - 1):
+        for p in range(a.loops[k], a.loops[k + 1] - 1):
+            px, py = a.samples[p, 0], a.samples[p, 1]
+            qx, qy = a.samples[p + 1, 0], a.samples[p + 1, 1]
+            near = min((px - x) ** 2 + (py - y) ** 2, (qx - x) ** 2 + (qy - y) ** 2)
+            whole = near > 9.0 * a.reach**2 or a.at[p, 0] != a.at[p + 1, 0]
+            steps = 1 if whole else FINE
+            for step in range(steps):
+                if step + 1 < steps:
+                    t = a.at[p, 1] + (a.at[p + 1, 1] - a.at[p, 1]) * (step + 1) / steps
+                    ex, ey, _, _, _, _ = jet(a.pieces[int(a.at[p, 0])], t)
+                else:
+                    ex, ey = qx, qy
+                if (py > y) != (ey > y) and x < px + (y - py) / (ey - py) * (ex - px):
+                    odd = not odd
+                px, py = ex, ey
     return odd
 
 
