@@ -32,11 +32,12 @@ def named(face: Any, number: int) -> str:
     from OCP.gp import gp_Pnt, gp_Pnt2d
     from OCP.IntTools import IntTools_Context
 
-    point = gp_Pnt()
+    kind, point = kind_of(face), gp_Pnt()
+    label = f"face {number} ({'an' if kind[0] in 'aeiou' else 'a'} {kind}"
     if BOPTools_AlgoTools3D.PointInFace_s(face, point, gp_Pnt2d(), IntTools_Context()):
-        return f"face {number} (a {kind_of(face)})"
+        return f"{label})"
     x, y, z = coordinates(point)
-    return f"face {number} (a {kind_of(face)} at ({x:.6g}, {y:.6g}, {z:.6g}))"
+    return f"{label} at ({x:.6g}, {y:.6g}, {z:.6g}))"
 
 
 def area_of(shape: Any, adaptive: bool = False) -> float:
