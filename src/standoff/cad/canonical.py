@@ -129,7 +129,7 @@ def _plane(samples: Samples) -> Likeness | None:
     from OCP.Geom import Geom_Plane
 
     point = samples.points.mean(axis=0)
-    normal = np.linalg.svd(samples.points - point)[2][-1]
+    normal = np.linalg.svd(samples.points - point, full_matrices=False)[2][-1]
     if np.abs(np.cross(samples.normals, normal)).max() > SAME_NORMALS:
         return None
     y, w = _beside(samples, point)
