@@ -76,10 +76,11 @@ def test_cones_alone_are_those_of_all_bounds(name: str) -> None:
             np.testing.assert_array_equal(angle, whole.angle)
 
 
-@settings(max_examples=draws(60))
+@settings(max_examples=draws(120))
 @given(SEEDS, st.integers(1, 5), st.integers(1, 5), st.sampled_from([1.0, 0.1, 1e-3, 1e-6]))
-def test_cones_of_polynomial_nets_hold_all_normals(seed: int, p: int, q: int, width: float) -> None:
-    """Of bent nets, also far from the origin, some with a side that is one point."""
+def test_cones_of_nets_hold_all_normals(seed: int, p: int, q: int, width: float) -> None:
+    """Of bent nets, polynomial and rational, also far from the origin, some with a side that is one
+    point."""
     rng = np.random.default_rng(seed)
     grid = np.stack(np.meshgrid(np.arange(p + 1.0), np.arange(q + 1.0), indexing="ij"), axis=-1)
     net = np.concatenate([grid, np.zeros((p + 1, q + 1, 1))], axis=2)
@@ -88,7 +89,8 @@ def test_cones_of_polynomial_nets_hold_all_normals(seed: int, p: int, q: int, wi
     if collapsed:
         net[0] = net[0].mean(axis=0)
     far = rng.choice([0.0, 1e3])
-    surface = g.BezierPatch(net + far * rng.normal(size=3))
+    weights = np.exp(rng.choice([0.0, 0.3, 1.0]) * rng.normal(size=(p + 1, q + 1)))
+    surface = g.BezierPatch(net + far * rng.normal(size=3), weights)
     u, v = rng.uniform(0.0, 1.0 - width, 2) * [0.0 if collapsed else 1.0, 1.0]
     rectangle = np.array([u, u + width, v, v + width])
     axis, angle = (found[0] for found in surface.normal_cones(rectangle))
@@ -96,11 +98,33 @@ def test_cones_of_polynomial_nets_hold_all_normals(seed: int, p: int, q: int, wi
         return
     spots = rng.uniform(size=(40, 2))
     spots[:4] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
-    exact = g.BezierPatch(net)  # the same normals, without the rounding of what is far away
+    exact = g.BezierPatch(net, weights)  # without the rounding of what is far away
     for s, t in spots if not collapsed else spots[np.abs(spots[:, 0]) > 1e-3]:
         jet = exact.jet(u + s * width, v + t * width)
         normal = np.cross(jet[1], jet[2])
         assert between(axis, normal / np.linalg.norm(normal)) <= angle + ROUNDED + 1e-12 * far
+
+
+@pytest.mark.parametrize("far", [0.0, 1e3])
+@pytest.mark.parametrize("uneven", [0.0, 0.3])
+def test_cones_of_nets_over_lines_and_points(uneven: float, far: float) -> None:
+    """A side without width, as beside an edge along a parameter, is known as a narrow one is."""
+    rng = np.random.default_rng(1)
+    grid = np.stack(np.meshgrid(np.arange(4.0), np.arange(4.0), indexing="ij"), axis=-1)
+    net = np.concatenate([grid, np.zeros((4, 4, 1))], axis=2) + 0.2 * rng.normal(size=(4, 4, 3))
+    weights = np.exp(uneven * rng.normal(size=(4, 4)))
+    surface = g.BezierPatch(net + far, weights)
+    axes, angles = surface.normal_cones(
+        [[0.5, 0.5, 0.2, 0.3], [0.2, 0.3, 0.4, 0.4], [1.0, 1.0, 0.2, 0.3], [0.5, 0.5, 0.5, 0.5]]
+    )
+    near = surface.normal_cones(
+        [[0.5, 0.501, 0.2, 0.3], [0.2, 0.3, 0.4, 0.401], [0.999, 1.0, 0.2, 0.3], [0.5, 0.501] * 2]
+    )[1]
+    assert (angles <= near).all()
+    assert angles[3] < 1e-9
+    jet = surface.jet(0.5, 0.5)
+    normal = np.cross(jet[1], jet[2])
+    assert between(axes[3], normal / np.linalg.norm(normal)) < 1e-9
 
 
 def test_every_class_of_surface_is_here() -> None:

@@ -13,12 +13,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.bernstein import product, segments
+from standoff.geometry.bernstein import segments
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.jet_bounds import JetBounds, widened
-from standoff.geometry.patch_bounds import PatchBounds, cone_round
+from standoff.geometry.patch_bounds import PatchBounds
 from standoff.geometry.tolerances import (
     CONE_ROUNDING,
     NET_ROUNDING,
@@ -93,49 +93,28 @@ class CutNets:
         h = _flat(self.net(0, 0))
         return h[:3] / h[3]
 
-    def normals(self) -> Interval:
-        """(3, k, n) coefficients of w^3 x_u × x_v, which span the normals.
-
-        They are those of w X_u × X_v + w_v X × X_u - w_u X × X_v with X relative to a point of the
-        part. On a side that is a single point they are zero up to rounding: such a row is dropped,
-        because the next one is that of the quotient by the distance from the side.
-        """
-        centre = self.points.middle.mean(axis=1)[:, :, None, None]
-        h, hu, hv = (self.net(*order) for order in ((0, 0), (1, 0), (0, 1)))
-        x, xu, xv = (c[:3] - interval(centre) * c[3] for c in (h, hu, hv))
-        plain = _crossed(xu, xv)
-        if hu[3].magnitude.any() or hv[3].magnitude.any():
-            plain = _times(plain, h[3])
-            plain = plain + _times(_crossed(x, xu), hv[3]) - _times(_crossed(x, xv), hu[3])
-        for axis in (0, 1):
-            for end in (0, 1):
-                at = np.flatnonzero(self._collapsed(axis, end))
-                row = (slice(None), at, -end) if axis == 0 else (slice(None), at, slice(None), -end)
-                plain.lo[row] = plain.hi[row] = 0.0
-        return _flat(plain)
-
     @cached_property
     def polynomial(self) -> bool:
-        """Are all weights one number, but for the roundoff of inserted knots? What that moves, the
-        spare for rounding covers."""
+        """Are all weights one number, but for the roundoff of inserted knots?"""
         w = self.h[..., 3]
         return bool(np.ptp(w) <= POLYNOMIAL_WEIGHTS * np.abs(w).max())
 
     def normal_cones(self) -> tuple[Array, Array]:
-        """(axis (n, 3), angle (n,)) of cones around x_u × x_v, angle pi where none is known."""
-        if not self.polynomial:
-            return cone_round(self.normals())
-        points = self.net(0, 0)
-        w, x = self.h.flat[3], points.middle[:3]
-        net = np.moveaxis((x - x.mean(axis=(2, 3), keepdims=True)) / w, 0, -1)
-        reach = np.abs(x).max(axis=(0, 2, 3))
-        off = np.linalg.norm(points.radius[:3], axis=0).max(axis=(1, 2)) + NET_ROUNDING * reach
+        """(axis (n, 3), angle (n,)) of cones around x_u × x_v, angle pi where none is known.
+
+        Points are taken relative to one of the part.
+        """
+        nets = [self.net(*order) for order in ((0, 0), (1, 0), (0, 1))]
+        rational = bool(np.ptp(self.h[..., 3]) > 0.0)
+        if rational:
+            centre = interval(self.points.middle.mean(axis=1)[:, :, None, None])
+            nets = [stacked([*(h[k] - centre[k] * h[3] for k in range(3)), h[3]]) for h in nets]
+        p, q = (count - 1 for count in self.h.shape[1:3])
         sides = [self._collapsed(axis, end) for axis in (0, 1) for end in (0, 1)]
-        found = np.empty((len(net), 4))
-        p, q = (count - 1 for count in net.shape[1:3])
-        rows = np.ascontiguousarray(net.reshape(len(net), -1))
         collapsed = np.stack(sides, axis=1).astype(np.float64)
-        net_cones(rows, p, q, off / abs(w), collapsed, NET_ROUNDING, found)
+        found = np.empty((len(self.h), 4))
+        rows = map(_coefficients, nets)
+        net_cones(*rows, p, q, collapsed, rational, found)
         angle = found[:, 3] + CONE_ROUNDING
         return found[:, :3], np.where(angle < 0.5 * np.pi, angle, np.pi)
 
@@ -195,19 +174,18 @@ def _flat(net: Interval) -> Interval:
     return Interval(*rows)
 
 
-def _times(a: Interval, b: Interval) -> Interval:
-    """The product of polynomials by Bernstein coefficients, (..., n, i, j)."""
-    middle = product(a.middle, b.middle)
-    # |a b - a' b'| <= |a'| |b - b'| + |a - a'| |b|, and each sum is rounded
-    spare = b.radius + NET_ROUNDING * np.abs(b.middle)
-    off = product(np.abs(a.middle), spare) + product(a.radius, b.magnitude)
-    return Interval(middle - 2.0 * off, middle + 2.0 * off)
+def _coefficients(net: Interval) -> Array:
+    """(n, 6 i j) rows of what a net (4, n, i, j) has of each coefficient: its vector, by how much
+    that may be wrong, its weight, and the same of it.
 
-
-def _crossed(a: Interval, b: Interval) -> Interval:
-    """(3, n, i, j) the cross product of vector polynomials."""
-    after, before = [1, 2, 0], [2, 0, 1]
-    return _times(a[after], b[before]) - _times(a[before], b[after])
+    Sums of up to a hundred products of two are rounded by less than twice `NET_ROUNDING`.
+    """
+    x, w = net.middle[:3], net.middle[3]
+    spare = 2.0 * NET_ROUNDING
+    off = np.linalg.norm(net.radius[:3], axis=0) + spare * np.linalg.norm(x, axis=0)
+    off_weight = net.radius[3] + spare * np.abs(w)
+    every = np.stack([*x, off, w, off_weight], axis=-1)
+    return every.reshape(len(every), -1)
 
 
 def net_bounds(nets_over: Callable[[Boxes], CutNets], boxes: Boxes) -> PatchBounds:
@@ -218,7 +196,7 @@ def net_bounds(nets_over: Callable[[Boxes], CutNets], boxes: Boxes) -> PatchBoun
     wide = np.flatnonzero(angle > WIDE_CONE)
     if len(wide):
         # the product of the nets gives narrower bounds than the mean value, at a higher cost
-        other, closer = cone_round(nets_over(boxes[wide]).normals())
+        other, closer = nets_over(boxes[wide]).normal_cones()
         axis[wide] = np.where((closer < angle[wide])[:, None], other, axis[wide])
         angle[wide] = np.minimum(closer, angle[wide])
     box = widened(nets.heights(np.eye(3)[..., None]))

@@ -116,7 +116,7 @@ sums of at most ten products, and the sum of a matrix product."""
 
 POLYNOMIAL_WEIGHTS: Final = 8.0 * float(np.finfo(np.float64).eps)
 """Weights of a polynomial spline are one number up to this fraction, where inserted knots have
-rounded them; NET_ROUNDING is eight times as much."""
+rounded them."""
 
 SPAN_ROUNDING: Final = 4.0 * float(np.finfo(np.float64).eps)
 """Ends of a part of a span are moved outward by this (a fraction of the span): they are rounded

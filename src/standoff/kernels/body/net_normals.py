@@ -1,10 +1,18 @@
-"""Cones of normals of polynomial Bezier patches, from their control nets.
+"""Cones of normals of Bezier patches, from their control nets.
 
-The normal x_u × x_v is a polynomial of degrees (2 p - 1, 2 q - 1). Its Bernstein coefficients span
-all normals (Farouki and Rajan, CAGD 1988), so a cone around them holds these.
+The normal x_u × x_v of a polynomial patch is a polynomial of degrees (2 p - 1, 2 q - 1). Its
+Bernstein coefficients span all normals (Farouki and Rajan, CAGD 1988), so a cone around them holds
+these. Of a rational one, x = X / w, it is w X_u × X_v + w_v X × X_u - w_u X × X_v over w^3, the
+former of degrees (3 p - 1, 3 q - 1).
+
+Each row of a net has, of one coefficient after the other, X, by how much it may be wrong, w, and
+the same of it: enough for the rounding of sums too. A *field* is a part of it times binomials, of
+which products are plain convolutions.
 """
 
 import math
+
+import numpy as np
 
 from standoff.kernels.algebra.vectors import cross, dot
 from standoff.kernels.compiler.decorators import kernel
@@ -22,57 +30,93 @@ def binomial(n, k):
 
 
 @kernel
-def edge_of(net, row, q, i, j, along_u):
-    """A control point's difference from the next one along u, or along v."""
-    k = 3 * (i * (q + 1) + j)
-    m = k + 3 * (q + 1) if along_u else k + 3
-    return (
-        net[row, m] - net[row, k],
-        net[row, m + 1] - net[row, k + 1],
-        net[row, m + 2] - net[row, k + 2],
-    )
+def part_of(field, i, j):
+    """A vector of a field, its length, and by how much it may be wrong."""
+    v = (field[i, j, 0], field[i, j, 1], field[i, j, 2])
+    return v, math.sqrt(dot(v, v)), field[i, j, 3]
 
 
 @kernel
-def normal_coefficient(net, row, degrees, a, b, off, rounding):
-    """A coefficient of x_u × x_v up to a scale, and by how much it may be wrong, if control points
-    are by `off`, length, and a sum is by a fraction `rounding` of its terms."""
-    p, q = degrees
-    x = y = z = wrong = 0.0
-    whole = binomial(2 * p - 1, a) * binomial(2 * q - 1, b)
-    for i in range(max(0, a - p), min(p - 1, a) + 1):
-        for j in range(max(0, b - q + 1), min(q, b) + 1):
-            k, m = a - i, b - j
-            share = binomial(p - 1, i) * binomial(p, k) * binomial(q, j) * binomial(q - 1, m)
-            du, dv = edge_of(net, row, q, i, j, True), edge_of(net, row, q, k, m, False)
-            n = cross(du, dv)
-            x, y, z = x + share * n[0], y + share * n[1], z + share * n[2]
-            su, sv = math.sqrt(dot(du, du)), math.sqrt(dot(dv, dv))
-            wrong += share * (2.0 * off * (su + sv + 2.0 * off) + rounding * su * sv)
-    return (x / whole, y / whole, z / whole), wrong / whole
+def fields_of(net, row, p, q):
+    """(vectors, weights) of a net of degrees (p, q): fields."""
+    vectors, weights = np.empty((p + 1, q + 1, 4)), np.empty((p + 1, q + 1, 2))
+    for i in range(p + 1):
+        for j in range(q + 1):
+            k = 6 * (i * (q + 1) + j)
+            share = binomial(p, i) * binomial(q, j)
+            for m in range(4):
+                vectors[i, j, m] = share * net[row, k + m]
+            weights[i, j, 0], weights[i, j, 1] = share * net[row, k + 4], share * net[row, k + 5]
+    return vectors, weights
 
 
 @kernel
-def net_cone(net, row, degrees, off, collapsed, rounding, units, out):
+def crossed(a, b):
+    """The field a × b."""
+    found = np.zeros((a.shape[0] + b.shape[0] - 1, a.shape[1] + b.shape[1] - 1, 4))
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            u, long_u, off_u = part_of(a, i, j)
+            for k in range(b.shape[0]):
+                for m in range(b.shape[1]):
+                    v, long_v, off_v = part_of(b, k, m)
+                    n = cross(u, v)
+                    for axis in range(3):
+                        found[i + k, j + m, axis] += n[axis]
+                    found[i + k, j + m, 3] += (long_u + off_u) * off_v + off_u * long_v
+    return found
+
+
+@kernel
+def add_weighted(weights, field, sign, found):
+    """`found` plus a sign times weights times a field."""
+    for i in range(weights.shape[0]):
+        for j in range(weights.shape[1]):
+            w, off_w = sign * weights[i, j, 0], weights[i, j, 1]
+            for k in range(field.shape[0]):
+                for m in range(field.shape[1]):
+                    v, long, off = part_of(field, k, m)
+                    for axis in range(3):
+                        found[i + k, j + m, axis] += w * v[axis]
+                    found[i + k, j + m, 3] += abs(w) * off + off_w * (long + off)
+
+
+@kernel
+def normals_of(nets, row, p, q, rational):
+    """The field that spans the normals of one patch."""
+    net, along_u, along_v = nets
+    xu, wu = fields_of(along_u, row, p - 1, q)
+    xv, wv = fields_of(along_v, row, p, q - 1)
+    across = crossed(xu, xv)
+    if not rational:
+        return across
+    x, w = fields_of(net, row, p, q)
+    found = np.zeros((3 * p, 3 * q, 4))
+    add_weighted(w, across, 1.0, found)
+    add_weighted(wv, crossed(x, xu), 1.0, found)
+    add_weighted(wu, crossed(x, xv), -1.0, found)
+    return found
+
+
+@kernel
+def net_cone(normals, row, collapsed, out):
     """(axis, half angle) of a cone around the normals of one patch, pi where none is known.
 
     On a side that is a single point (`collapsed`, of u = 0, u = 1, v = 0 and v = 1) the normal
     vanishes, and the next coefficients are those of its quotient by the distance from the side.
     """
-    p, q = degrees
+    last_u, last_v = normals.shape[0] - 1, normals.shape[1] - 1
+    units = np.empty((normals.shape[0] * normals.shape[1], 3))
     count = 0
     lean = x = y = z = 0.0
-    for a in range(2 * p):
-        for b in range(2 * q):
-            ends = (a == 0, a == 2 * p - 1, b == 0, b == 2 * q - 1)
+    for a in range(last_u + 1):
+        for b in range(last_v + 1):
+            ends = (a == 0, a == last_u, b == 0, b == last_v)
             left_out = False
             for k in range(4):
                 left_out = left_out or (ends[k] and collapsed[row, k] != 0.0)
-            if left_out:
-                continue
-            n, wrong = normal_coefficient(net, row, degrees, a, b, off, rounding)
-            size = math.sqrt(dot(n, n))
-            if size == 0.0 and wrong == 0.0:
+            n, size, wrong = part_of(normals, a, b)
+            if left_out or (size == 0.0 and wrong == 0.0):
                 continue
             if not size > 2.0 * wrong:
                 out[row, 0], out[row, 1], out[row, 2], out[row, 3] = 0.0, 0.0, 1.0, math.pi

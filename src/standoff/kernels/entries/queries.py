@@ -4,15 +4,14 @@ A kernel that got arrays from Python and pointers from other kernels would be co
 all that it calls. These are the few that the layers above need.
 """
 
-import numpy as np
-
 from standoff.kernels.algebra.rigid import relative_pose, relative_twist
 from standoff.kernels.algebra.vectors import unit
 from standoff.kernels.body import features, jets, trimming
 from standoff.kernels.body import inner_box as inner_boxes
-from standoff.kernels.body.net_normals import centred, net_cone
+from standoff.kernels.body.net_normals import centred, net_cone, normals_of
 from standoff.kernels.compiler.decorators import entry, kernel, pointer
 from standoff.kernels.compiler.entry import (
+    BOOL,
     INT,
     INTS,
     PAIR,
@@ -73,12 +72,13 @@ def pcurve_jets(reals, kind, o, ts, out):
         write_vectors(out, i, jets.pcurve_jet(at, kind, o, ts[i]))
 
 
-@entry(READ_ROWS, INT, INT, READ, READ_ROWS, REAL, ROWS, work="bodies")
-def net_cones(nets, p, q, off, collapsed, rounding, out):
-    """Cones of normals of control nets of degrees (p, q), one a row, into rows (axis, angle)."""
-    units = np.empty((4 * p * q, 3))
+@entry(READ_ROWS, READ_ROWS, READ_ROWS, INT, INT, READ_ROWS, BOOL, ROWS, work="bodies")
+def net_cones(nets, along_u, along_v, p, q, collapsed, rational, out):
+    """Cones of normals of nets of degrees (p, q) and their derivatives, one a row, into rows (axis,
+    angle); the weights of those that are not rational are one number."""
     for i in range(len(nets)):
-        net_cone(nets, i, (p, q), off[i], collapsed, rounding, units, out)
+        normals = normals_of((nets, along_u, along_v), i, p, q, rational)
+        net_cone(normals, i, collapsed, out)
 
 
 @entry(READ_BLOCKS, ROWS, work="bodies")

@@ -19,7 +19,6 @@ from standoff.geometry.series import Series, power
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
-from standoff.geometry.tolerances import POLYNOMIAL_WEIGHTS
 from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.solids.spatial.tolerances import DERIVATIVE_INFLATION
@@ -136,10 +135,9 @@ def _of_polynomials(nets: CutNets, linear: Array, orders: Sequence[tuple[int, in
     """The same of polynomials, whose derivatives are no longer than the longest of their nets."""
     found = np.zeros((len(nets.h), len(orders) - 1))
     w, most = abs(float(nets.h.flat[3])), float(np.linalg.norm(linear, 2))
-    points = nets.h[..., :3] - nets.h[..., :3].mean(axis=(1, 2), keepdims=True)
     degrees = [size - 1 for size in nets.h.shape[1:3]]
-    # weights that are 1 up to roundoff move a point of the net by this
-    uneven = POLYNOMIAL_WEIGHTS * np.linalg.norm(points, axis=3).max(axis=(1, 2))
+    # weights that are one number up to roundoff move a point of the net by this
+    uneven = np.ptp(nets.h[..., 3]) / w * np.linalg.norm(nets.h[..., :3], axis=3).max(axis=(1, 2))
     for k, order in enumerate(orders[1:]):
         net, moved = nets.net(*order), most * uneven
         rows = np.tensordot(linear, net.middle[:3], 1)
