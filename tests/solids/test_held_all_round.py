@@ -36,6 +36,17 @@ def block(width: float, height: float, depth: float) -> Solid:
     return prism([(0, 0), (width, 0), (width, height), (0, height)], depth)
 
 
+@cache
+def channel() -> Solid:
+    return prism([(0, 0), (3, 0), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)], 2.0)
+
+
+def raised_key() -> Solid:
+    """As wide as the channel and longer. It is above the ground, so that between the walls its
+    lower face is near nothing."""
+    return prism([(1.0, 1.25), (2.0, 1.25), (2.0, 1.75), (1.0, 1.75)], 3.0)
+
+
 HELD = OnFirstUse(
     {
         "pin through its hole": lambda: (hole(), peg(1.0, -0.5, 1.5), 0.0),
@@ -45,6 +56,7 @@ HELD = OnFirstUse(
         "block on three sides": lambda: (slot(), block(2.0, 1.0, 2.0), 0.5),
         "block flush with its slot": lambda: (slot(), block(2.0, 1.0, 3.0), 0.0),
         "block through its slot": lambda: (slot(), block(2.0, 3.0, 5.0), -1.0),
+        "key off the ground of its channel": lambda: (channel(), raised_key(), -0.5),
         "ball in its socket": lambda: (socket(1.0, 2.0), ball(1.0), 0.0),
     }
 )

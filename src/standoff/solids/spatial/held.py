@@ -122,7 +122,7 @@ class _Sides:
             if not all(self._part(*piece) for piece in waiting):
                 return False
             bad = self._not_joined()
-            if bad.any() and not (self.pressed and len(self.parts) < MOST_PARTS):
+            if bad.any() and len(self.parts) >= MOST_PARTS:
                 return False
             split = [part.piece for k, part in enumerate(self.parts) if bad[k]]
             self.parts = [part for k, part in enumerate(self.parts) if not bad[k]]

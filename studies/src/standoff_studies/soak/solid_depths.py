@@ -127,6 +127,8 @@ def least_of_boxes(a: Array, b: Array) -> float:
     least distance of 0 from a cell, between planes of their faces, that no pair of boxes covers."""
     low = (a[:, None, 0] - b[None, :, 1]).reshape(-1, 3)
     high = (a[:, None, 1] - b[None, :, 0]).reshape(-1, 3)
+    if not np.any(np.all((low < 0.0) & (high > 0.0), axis=1)):
+        return 0.0  # between walls, say, where each way but one leads into one of them
     cuts = [np.unique(np.r_[-np.inf, low[:, k], high[:, k], np.inf]) for k in range(3)]
     cells = np.array(list(product(*(range(len(c) - 1) for c in cuts))))
     first, last = (np.array([cuts[k][cells[:, k] + e] for k in range(3)]).T for e in (0, 1))
