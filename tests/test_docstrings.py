@@ -1,7 +1,7 @@
 """What the docstrings of public names must say, as far as a machine can tell.
 
 Every parameter is described, functions say what they return, and whatever is raised at a wrong
-argument, tried out, is named under Raises.
+argument, tried out, is named under Raises, or in a paragraph that begins with it.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from fuzz.test_hostile_arguments import FEW, HOSTILE
 from public_calls import MODULES, NOT_CALLED, Call, calls, pair_calls
 
 HEADING = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
+SENTENCE = re.compile(r"^Raises [^\n].*?(?=\n\n|\Z)", re.MULTILINE | re.DOTALL)
 
 
 def sections(thing: Any) -> dict[str, str]:
@@ -82,7 +83,8 @@ def raised(call: Call, arguments: dict[str, Any]) -> Exception | None:
 @pytest.mark.parametrize("call", [*calls(), *pair_calls()], ids=lambda call: call.name)
 def test_what_is_raised_is_named(call: Call) -> None:
     """By its own name, or that of a class it inherits from."""
-    told = sections(call.public).get("Raises", "")
+    sentences = SENTENCE.findall(inspect.getdoc(call.public) or "")
+    told = "\n".join([sections(call.public).get("Raises", ""), *sentences])
     kinds = HOSTILE if call.name in CHEAP else FEW
     for key in call.arguments:
         for kind in kinds:

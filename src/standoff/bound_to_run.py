@@ -10,10 +10,7 @@ from standoff.errors import StandoffTypeError
 class BoundToRun:
     """A base of objects that hold a thread, a lock or a connection: they are not copied or stored.
 
-    Raises
-    ------
-    StandoffTypeError
-        By ``copy.copy``, ``copy.deepcopy`` and ``pickle``.
+    Raises StandoffTypeError: by ``copy.copy``, ``copy.deepcopy`` and ``pickle``.
     """
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> NoReturn:

@@ -28,6 +28,10 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
     Make it once for a pair of bodies: it is kept until the program ends. Call it with MX
     expressions, not SX. For n poses use its ``map(n)``.
 
+    Raises TypeError: no bodies. Raises ValueError: an unknown choice, or a name that CasADi does
+    not take. When called, within CasADi's own RuntimeError: a matrix that is not a pose; undefined
+    derivatives, if asked; a third derivative.
+
     Parameters
     ----------
     a, b : Body
@@ -42,15 +46,6 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
     casadi.Callback
         (pose_a, pose_b), of 4 x 4, to the distance. Its Jacobian and Hessian by the matrices are
         those of the distance at the nearest pose.
-
-    Raises
-    ------
-    TypeError
-        No bodies.
-    ValueError
-        An unknown choice, or a name that CasADi does not take. When called, within CasADi's own
-        RuntimeError: a matrix that is not a pose; undefined derivatives, if asked; a third
-        derivative.
     """
     check_name(name)
     return _Value(ambient.Pair.of(a, b, undefined), name)
@@ -69,6 +64,10 @@ def design_distance(
     Make it once for a pair of designs, as `distance`. It has first derivatives, no second ones:
     Ipopt takes it with ``hessian_approximation="limited-memory"``.
 
+    Raises TypeError: no designs. Raises ValueError: an unknown choice, or a name that CasADi does
+    not take. When called, within CasADi's own RuntimeError: parameters that make no body; a matrix
+    that is not a pose; undefined derivatives, if asked; a second derivative.
+
     Parameters
     ----------
     design_a, design_b : Design or Body
@@ -84,15 +83,6 @@ def design_distance(
         Its inputs are named: ``a_radius`` is A's parameter ``radius``, ``b_radius`` B's; ``pose_a``
         and ``pose_b`` come last. A parameter of one index is a column, one of more than two a
         column of its numbers in NumPy's order.
-
-    Raises
-    ------
-    TypeError
-        No designs.
-    ValueError
-        An unknown choice, or a name that CasADi does not take. When called, within CasADi's own
-        RuntimeError: parameters that make no body; a matrix that is not a pose; undefined
-        derivatives, if asked; a second derivative.
     """
     check_name(name)
     pair = design_a, design_b
@@ -103,9 +93,7 @@ def design_distance(
 def check_name(name: str) -> None:
     """Refuse a name that CasADi does not take.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     if not casadi.Function.check_name(name):
         raise StandoffError(

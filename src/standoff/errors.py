@@ -157,15 +157,13 @@ def not_installed(library: str, extra: str = "cli") -> str:
 def of_extra(library: str, extra: str = "cli") -> Iterator[None]:
     """For the imports within: where a library is missing, the extra that it comes with is told.
 
+    Raises ModuleNotFoundError.
+
     Parameters
     ----------
     library : str
         As it is called; if empty, the module that is missing.
     extra : str
-
-    Raises
-    ------
-    ModuleNotFoundError
     """
     try:
         yield

@@ -29,6 +29,10 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     Works under ``jit``, ``vmap``, ``grad``, ``jvp`` and ``hessian``. The bodies are constants:
     close over them.
 
+    Raises StandoffError if 64-bit numbers are not enabled, or an argument is not a body, not
+    float64 or not shaped like poses. At run time, within JAX's own error: a matrix that is not a
+    pose; undefined derivatives, if asked.
+
     Parameters
     ----------
     a, b : Body
@@ -42,13 +46,6 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     -------
     array, shape () or (n,)
         Its gradient by a matrix is that of the distance at the nearest pose.
-
-    Raises
-    ------
-    StandoffError
-        If 64-bit numbers are not enabled, or an argument is not a body, not float64 or not shaped
-        like poses. At run time, within JAX's own error: a matrix that is not a pose; undefined
-        derivatives, if asked.
     """
     pair = ambient.Pair.of(a, b, undefined)
     poses = [_float64(pose_a, "pose_a"), _float64(pose_b, "pose_b")]
@@ -71,6 +68,11 @@ def design_distance(
 
     Works under ``jit``, ``vmap``, ``grad`` and ``jvp``, once: it has no second derivatives.
 
+    Raises StandoffError if 64-bit numbers are not enabled, or an argument is not a design, not
+    float64, not one of the parameters or not of its shape. At run time, within JAX's own error:
+    parameters that make no body; a matrix that is not a pose; undefined derivatives, if asked. A
+    second derivative.
+
     Parameters
     ----------
     design_a, design_b : Design or Body
@@ -86,14 +88,6 @@ def design_distance(
     Returns
     -------
     array, shape () or (n,)
-
-    Raises
-    ------
-    StandoffError
-        If 64-bit numbers are not enabled, or an argument is not a design, not float64, not one of
-        the parameters or not of its shape. At run time, within JAX's own error: parameters that
-        make no body; a matrix that is not a pose; undefined derivatives, if asked. A second
-        derivative.
     """
     params = params_a, params_b
     designs = designed.Designs.of(design_a, design_b, params, undefined)

@@ -24,10 +24,7 @@ METADATA = b"standoff"
 def table(columns: Mapping[str, Any], facts: Mapping[str, Any]) -> pa.Table:
     """Return a table of PyArrow with its facts.
 
-    Raises
-    ------
-    TypeError, ValueError
-        Facts that JSON cannot hold.
+    Raises TypeError, ValueError: facts that JSON cannot hold.
     """
     text = json.dumps(dict(facts), ensure_ascii=False, allow_nan=False)
     return pa.table(dict(columns)).replace_schema_metadata({METADATA: text})

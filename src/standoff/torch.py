@@ -23,6 +23,10 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     Works with ``backward``, ``autograd.grad(..., create_graph=True)``, and ``torch.func``'s
     ``grad``, ``jacrev`` and ``vmap``; in forward mode (``jvp``, ``jacfwd``) it does not.
 
+    Raises TypeError: no bodies, or no tensors. Raises StandoffError: tensors of another type,
+    device or shape; a matrix that is not a pose. In ``backward``: undefined derivatives, if asked;
+    a third derivative.
+
     Parameters
     ----------
     a, b : Body
@@ -36,14 +40,6 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     -------
     Tensor, shape () or (n,)
         Its gradient by a matrix is that of the distance at the nearest pose.
-
-    Raises
-    ------
-    TypeError
-        No bodies, or no tensors.
-    StandoffError
-        Tensors of another type, device or shape; a matrix that is not a pose. In ``backward``:
-        undefined derivatives, if asked; a third derivative.
     """
     pair = ambient.Pair.of(a, b, undefined)
     _check(pose_a, "pose_a")
@@ -68,6 +64,10 @@ def design_distance(
     Works with ``backward``, and ``torch.func``'s ``grad``, ``jacrev`` and ``vmap``, once: it has no
     second derivatives.
 
+    Raises TypeError: no designs, or no tensors. Raises StandoffError: an unknown parameter; tensors
+    of another type, device or shape; parameters that make no body; a matrix that is not a pose. In
+    ``backward``: undefined derivatives, if asked; a second derivative.
+
     Parameters
     ----------
     design_a, design_b : Design or Body
@@ -83,15 +83,6 @@ def design_distance(
     Returns
     -------
     Tensor, shape () or (n,)
-
-    Raises
-    ------
-    TypeError
-        No designs, or no tensors.
-    StandoffError
-        An unknown parameter; tensors of another type, device or shape; parameters that make no
-        body; a matrix that is not a pose. In ``backward``: undefined derivatives, if asked; a
-        second derivative.
     """
     params = params_a, params_b
     designs = designed.Designs.of(design_a, design_b, params, undefined)

@@ -36,12 +36,7 @@ class MissingFolder(UnfitTarget, FileNotFoundError):
 def file_name(given: object) -> Path:
     """Return the path of a file to be written.
 
-    Raises
-    ------
-    TypeError
-        If it is neither a string nor a path.
-    ValueError
-        If it is empty.
+    Raises TypeError if it is neither a string nor a path. Raises ValueError if it is empty.
     """
     if not isinstance(given, str | Path):
         raise StandoffTypeError(
@@ -64,13 +59,9 @@ def kind_of(mode: int) -> str:
 def destination(target: Path) -> Path:
     """Return the regular file that is, or will be, written under a name: the end of its links.
 
-    Raises
-    ------
-    UnfitTarget
-        If it is something else, such as a folder, a FIFO or a device; if its folder does not exist;
-        if no file can have the name.
-    OSError
-        If the system cannot tell, as where links go in a circle.
+    Raises UnfitTarget if it is something else, such as a folder, a FIFO or a device; if its folder
+    does not exist; if no file can have the name. Raises OSError if the system cannot tell, as where
+    links go in a circle.
     """
     try:
         mode = target.stat().st_mode
@@ -104,12 +95,8 @@ def write_whole(files: Mapping[Path, Writer]) -> None:
     reader sees the old file or the new one. A link is kept: the file that it leads to is replaced.
     The new file gets the permissions of the old one.
 
-    Raises
-    ------
-    UnfitTarget
-        If a target is neither a regular file nor new, or two of them lead to one file.
-    OSError
-        If a file cannot be written, as on a full disk.
+    Raises UnfitTarget if a target is neither a regular file nor new, or two of them lead to one
+    file. Raises OSError if a file cannot be written, as on a full disk.
     """
     staged: dict[Path, Path] = {}
     try:

@@ -125,10 +125,7 @@ class ParallelBranches(Course):
     def branch(self, key: int) -> BranchAutomaton:
         """The branch of a key.
 
-        Raises
-        ------
-        LookupError
-            If none has it.
+        Raises LookupError if none has it.
         """
         for each in self.branches:
             if each.key == key:

@@ -49,6 +49,10 @@ class SolidAutomaton(ParallelBranches):
     def plot(self, path: str | Path | None = None) -> Figure:
         """Draw the features that were visited, and under them a lane for each branch over time.
 
+        Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra.
+        Raises TypeError if `path` is neither a string nor a Path. Raises ValueError if it is empty,
+        or the file has another ending. Raises OSError if the file cannot be written.
+
         Parameters
         ----------
         path : str or path, optional
@@ -57,17 +61,6 @@ class SolidAutomaton(ParallelBranches):
         Returns
         -------
         matplotlib.figure.Figure
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty, or the file has another ending.
-        OSError
-            If the file cannot be written.
         """
         from standoff.bodies.drawing.files import drawn
 

@@ -49,6 +49,8 @@ def write_automaton(
 ) -> None:
     """Draw an automaton to a stream.
 
+    Raises OSError if the file cannot be written.
+
     Parameters
     ----------
     file : binary stream
@@ -58,11 +60,6 @@ def write_automaton(
     names : (str, str)
         What A and B are called.
     title : str
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
     """
     automaton_figure(automaton, names, title).savefig(file, format=ending)
 

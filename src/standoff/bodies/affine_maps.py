@@ -35,11 +35,8 @@ class AffineMap(NamedTuple):
 def affine_map(given: Any, radius: float, dimension: int) -> AffineMap:
     """An affine map for a body with a swept radius (length) and a dimension.
 
-    Raises
-    ------
-    StandoffError
-        No map, a singular one, one that is no similarity for a radius, or that takes a planar body
-        out of its plane.
+    Raises StandoffError: no map, a singular one, one that is no similarity for a radius, or that
+    takes a planar body out of its plane.
     """
     try:
         linear, shift = _read(given)

@@ -63,6 +63,10 @@ class Body(Boundary):
     ) -> Body:
         """A body from its boundary: vertices, edges and faces.
 
+        Raises BodyError: open edges, edges used too often, parts that do not meet, a boundary that
+        is not convex. Raises TypeError: edges or faces that are not a list. Raises ValueError: NaN,
+        infinite, negative or wrongly shaped numbers.
+
         Parameters
         ----------
         vertices : (n, 3) array_like
@@ -81,15 +85,6 @@ class Body(Boundary):
             default. The distance found goes into the certificate's slack.
         convexity_tolerance : float, optional
             Greatest convexity defect, length; 1e-6 of the size by default (``BodyReport``).
-
-        Raises
-        ------
-        BodyError
-            Open edges, edges used too often, parts that do not meet, a boundary that is not convex.
-        TypeError
-            Edges or faces that are not a list.
-        ValueError
-            NaN, infinite, negative or wrongly shaped numbers.
         """
         radius = magnitude_or_zero(rounding, "rounding")
         if convexity_tolerance is not None:
@@ -112,6 +107,11 @@ class Body(Boundary):
         point, and may be shared by several smaller ones (T-junctions). Patches may face either
         way. What is split, turned and found smooth is in ``body.check()``.
 
+        Raises BodyError: sides that match none or several, more than one shell, patches that meet
+        only in a point, no volume, a boundary that is not convex; the message names the place, and
+        for an open shell the gaps and, if there is one, a ``tolerance`` that would close them.
+        Raises ValueError: NaN, infinite or negative numbers.
+
         Parameters
         ----------
         patches : sequence of Surface
@@ -129,15 +129,6 @@ class Body(Boundary):
             the patches and sampled for the edges goes into the certificate's slack too.
         rounding : float
             Radius of a ball swept over the body, length: it grows by this much on all sides.
-
-        Raises
-        ------
-        BodyError
-            Sides that match none or several, more than one shell, patches that meet only in a
-            point, no volume, a boundary that is not convex; the message names the place, and for
-            an open shell the gaps and, if there is one, a ``tolerance`` that would close them.
-        ValueError
-            NaN, infinite or negative numbers.
         """
         from standoff.bodies.sewing import sew
 
@@ -172,6 +163,10 @@ class Body(Boundary):
         same points: vertices in the points' order, faces by Qhull's order of facets, edges as the
         faces' outlines come to them.
 
+        Raises BodyError: the points span no volume (no area), are too thin for their extent, or
+        extend over less than 1e-50. Raises ValueError: a wrong shape, a number that is not finite
+        or beyond 1e50, a tolerance that is not positive, a negative rounding.
+
         Parameters
         ----------
         points : (n, 3) or (n, 2) array_like
@@ -192,15 +187,6 @@ class Body(Boundary):
         Returns
         -------
         Body
-
-        Raises
-        ------
-        BodyError
-            The points span no volume (no area), are too thin for their extent, or extend over less
-            than 1e-50.
-        ValueError
-            A wrong shape, a number that is not finite or beyond 1e50, a tolerance that is not
-            positive, a negative rounding.
         """
         from standoff.bodies.hulls.from_points import hull_of
 
@@ -261,10 +247,8 @@ class Body(Boundary):
     def transformed(self, affine: Any) -> Body:
         """The exact image under an affine map: a (3, 3), a (4, 4), or a ((3, 3), (3,)) pair.
 
-        Raises
-        ------
-        ValueError
-            Singular map; or a map that is not a similarity on a body with a swept radius.
+        Raises ValueError: singular map; or a map that is not a similarity on a body with a swept
+        radius.
         """
         linear, shift, stretch, flip = affine_map(affine, self.radius, self.dimension)
         radius = self.radius * stretch
@@ -309,6 +293,10 @@ class Body(Boundary):
 
         Faces, edges, vertices, smooth seams and outward normals, in equal scales.
 
+        Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra.
+        Raises TypeError if `path` is neither a string nor a Path. Raises ValueError if it is empty
+        or has a different file extension. Raises OSError if the file cannot be written.
+
         Parameters
         ----------
         path : str or path, optional
@@ -319,17 +307,6 @@ class Body(Boundary):
         Returns
         -------
         matplotlib.figure.Figure
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty or has a different file extension.
-        OSError
-            If the file cannot be written.
         """
         from standoff.bodies.drawing.body_picture import draw_body
         from standoff.bodies.drawing.files import drawn

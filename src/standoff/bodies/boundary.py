@@ -75,6 +75,11 @@ class Boundary(PackedParts):
         Its loops determine where a face is: inside the outermost and outside the others. Its
         neighbours and the enclosed volume determine which side of it is outside.
 
+        Raises BodyError: an open shell, an edge of more than two faces, a surface with only one
+        side, no volume, shells beside each other, or one inside another that faces the same way.
+        Raises TypeError: edges or faces that are not a list. Raises ValueError: NaN, infinite,
+        negative or wrongly shaped numbers.
+
         Parameters
         ----------
         vertices : (n, 3) array_like
@@ -94,16 +99,6 @@ class Boundary(PackedParts):
         Returns
         -------
         Boundary
-
-        Raises
-        ------
-        BodyError
-            An open shell, an edge of more than two faces, a surface with only one side, no volume,
-            shells beside each other, or one inside another that faces the same way.
-        TypeError
-            Edges or faces that are not a list.
-        ValueError
-            NaN, infinite, negative or wrongly shaped numbers.
         """
         from standoff.bodies.assembly import joined_parts
 
@@ -116,6 +111,9 @@ class Boundary(PackedParts):
     ) -> Boundary:
         """A boundary from patches that close one or more shells: their sides are sewn together.
 
+        Raises BodyError as for `from_brep`, and sides that match none or several, as in
+        ``Body.from_patches``.
+
         Parameters
         ----------
         patches : sequence of Surface
@@ -126,11 +124,6 @@ class Boundary(PackedParts):
         Returns
         -------
         Boundary
-
-        Raises
-        ------
-        BodyError
-            As for `from_brep`, and sides that match none or several, as in ``Body.from_patches``.
         """
         from standoff.bodies.closing import joined_patches
 
@@ -138,6 +131,9 @@ class Boundary(PackedParts):
 
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside or on the boundary.
+
+        Raises StandoffError: a wrong shape, or a number that is not finite; a point for which no
+        ray decides; a body that is planar, unbounded, without faces, or rounded.
 
         Parameters
         ----------
@@ -147,12 +143,6 @@ class Boundary(PackedParts):
         Returns
         -------
         (n,) array of bool
-
-        Raises
-        ------
-        StandoffError
-            A wrong shape, or a number that is not finite; a point for which no ray decides; a body
-            that is planar, unbounded, without faces, or rounded.
         """
         from standoff.bodies.crossings import Crossings
 

@@ -126,10 +126,8 @@ def _check_volume(shell: Sequence[int], found: Enclosed, tolerance: float) -> No
 def _cavities(boundary: PackedParts, joined: Joined, shells: Sequence[Enclosed]) -> list[int]:
     """Numbers of the shells that lie inside the outer one.
 
-    Raises
-    ------
-    BodyError
-        Shells beside each other, in a cavity, or inside the outer one and facing the same way.
+    Raises BodyError: shells beside each other, in a cavity, or inside the outer one and facing the
+    same way.
     """
     if len(shells) == 1:
         return []

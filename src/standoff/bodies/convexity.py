@@ -58,10 +58,8 @@ def convexity(
 
     known : names and proofs of all faces, each of one chart, if they exist already.
 
-    Raises
-    ------
-    BodyError
-        A patch or an edge that is concave by more than the tolerance (length), with the place.
+    Raises BodyError: a patch or an edge that is concave by more than the tolerance (length), with
+    the place.
     """
     names = known.names if known else [f"face {i}" for i in range(len(body.faces))]
     checks = []

@@ -91,10 +91,7 @@ class Crossings:
     def inside(self, point: Array) -> bool:
         """Is a point inside, or on a face?
 
-        Raises
-        ------
-        BodyError
-            The crossings alternate along no direction.
+        Raises BodyError: the crossings alternate along no direction.
         """
         for grazing in (False, True):
             for number in range(len(DIRECTIONS)):

@@ -38,10 +38,7 @@ NO_FEATURE = Feature("", -1)
 def feature_told(text: str) -> Feature:
     """The feature that `str` made a text of.
 
-    Raises
-    ------
-    ValueError
-        It made no such text.
+    Raises ValueError: it made no such text.
     """
     if not text.strip():
         return NO_FEATURE

@@ -47,10 +47,8 @@ def finish(
 ) -> Packed:
     """Prove convexity, bound the defect, and pack.
 
-    Raises
-    ------
-    BodyError
-        A boundary that is not convex, has no extent, or is a knife edge with a residual.
+    Raises BodyError: a boundary that is not convex, has no extent, or is a knife edge with a
+    residual.
     """
     parts = joined.parts
     ints, reals = pack(parts, [], (np.zeros(3), np.zeros(3)), radius, 0.0)

@@ -42,10 +42,7 @@ class Loop:
 def traced(face: Face, edges: Sequence[Edge], number: int) -> list[tuple[int, ...]]:
     """A face's entries as closed chains, in the senses in which they were given.
 
-    Raises
-    ------
-    BodyError
-        A chain that is open, or whose senses do not follow each other.
+    Raises BodyError: a chain that is open, or whose senses do not follow each other.
     """
     ends = [_ends(edges[j], sense) for j, sense in face.loop]
     alone = [(k,) for k, (first, _) in enumerate(ends) if first is None]
@@ -94,10 +91,8 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
 
     Returns whether most of its loops had to be turned.
 
-    Raises
-    ------
-    BodyError
-        Loops that bound no face: open ones, several side by side, a single one around a surface.
+    Raises BodyError: loops that bound no face: open ones, several side by side, a single one around
+    a surface.
     """
     loops = [_loop(chart, entries, edges) for entries in traced(face, edges, number)]
     round_ = sum(loop.turns != 0 for loop in loops)

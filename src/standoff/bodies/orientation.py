@@ -57,16 +57,14 @@ def orient(
 ) -> Oriented:
     """Turn every chart outward, and its coedges so that the face is on their left.
 
+    Raises BodyError: an edge that does not join two faces; loops that bound no face; a one-sided
+    shell.
+
     Parameters
     ----------
     senses : for every face +1 if x_u × x_v points outward, -1 if inward, None if its loops decide.
     trusted : all senses are known, and the loops are known to run counterclockwise seen from
         outside.
-
-    Raises
-    ------
-    BodyError
-        An edge that does not join two faces; loops that bound no face; a one-sided shell.
     """
     users = _edge_users(faces, edges)
     given = senses if senses is not None else [None] * len(faces)

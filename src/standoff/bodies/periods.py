@@ -41,10 +41,7 @@ def in_one_period(chart: Chart) -> None:
     """Bring the trimming curves of a chart into one period of its angles and into the surface's
     domain, and prove it.
 
-    Raises
-    ------
-    BodyError
-        Curves that can't be brought there.
+    Raises BodyError: curves that can't be brought there.
     """
     if chart.surface.periodic and not all(is_rim(c) for c in chart.coedges):
         _cut(chart)

@@ -40,11 +40,8 @@ class _Run:
 def planar_convexity(body: Assembled, size: float, tolerance: float) -> Convexity:
     """Bound the convexity defect of a closed planar loop.
 
-    Raises
-    ------
-    BodyError
-        A curve or a corner that is concave by more than the tolerance (length), a curve with a
-        corner inside, a loop that turns more than once.
+    Raises BodyError: a curve or a corner that is concave by more than the tolerance (length), a
+    curve with a corner inside, a loop that turns more than once.
     """
     checks, total = [], 0.0
     for j, edge in enumerate(body.edges):
@@ -121,10 +118,7 @@ def _proof(curve: Curve, outward: int, number: int) -> PatchProof:
 def _joints(curve: Curve, number: int) -> list[float]:
     """The ends of a curve and those inner knots where it could have a corner but does not.
 
-    Raises
-    ------
-    BodyError
-        It has a corner.
+    Raises BodyError: it has a corner.
     """
     if not isinstance(curve, NurbsCurve):
         return [curve.first, curve.last]

@@ -13,16 +13,13 @@ def with_radius(body: Body, radius: float) -> Body:
     """Return the same core, swept by a ball of another radius: the packed numbers are those of a
     body that is made with it, in a hundredth of the time.
 
+    Raises ValueError: a radius that is negative, not finite, beyond 1e50, or between 0 and 1e-50.
+
     Parameters
     ----------
     body : Body
     radius : float
         Length, zero or above.
-
-    Raises
-    ------
-    ValueError
-        A radius that is negative, not finite, beyond 1e50, or between 0 and 1e-50.
     """
     radius = magnitude_or_zero(radius, "radius")
     reals = body.reals.copy()

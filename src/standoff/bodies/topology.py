@@ -132,10 +132,7 @@ def extent_of(points: Any, what: str) -> float:
     """The diagonal of the box around points, length, which is not below `LEAST`: squares are taken
     of it.
 
-    Raises
-    ------
-    BodyError
-        It is.
+    Raises BodyError: it is.
     """
     extent = float(np.linalg.norm(np.ptp(points, axis=0)))
     if not extent >= LEAST:

@@ -39,6 +39,9 @@ def build_library(
 ) -> tuple[Path, Path]:
     """Build the shared library of the C interface; takes two to three minutes of a processor.
 
+    Raises StandoffError: no compiler, or one that fails; a system without such libraries; a
+    processor that LLVM does not know. Raises OSError if a file cannot be written.
+
     Parameters
     ----------
     folder : str or Path
@@ -56,14 +59,6 @@ def build_library(
     -------
     (Path, Path)
         The library and the header.
-
-    Raises
-    ------
-    StandoffError
-        No compiler, or one that fails; a system without such libraries; a processor that LLVM does
-        not know.
-    OSError
-        If a file cannot be written.
     """
     target = file_name(folder)
     if not target.is_dir():

@@ -38,21 +38,16 @@ def save_pair(path: str | Path, tracker: Tracker | SolidTracker) -> None:
     The file fits the library that the same version of Standoff builds. It is written whole or not
     at all.
 
+    Raises StandoffTypeError: not a tracker. Raises StandoffError: a body with a surface or curve
+    made of formulas, whose machine code lives in this process; a tracker with ``specialise=True``
+    for kinds of faces for which the library has no frame. Raises OSError if the file cannot be
+    written.
+
     Parameters
     ----------
     path : str or Path
         New, or replaced.
     tracker : Tracker or SolidTracker
-
-    Raises
-    ------
-    StandoffTypeError
-        Not a tracker.
-    StandoffError
-        A body with a surface or curve made of formulas, whose machine code lives in this process; a
-        tracker with ``specialise=True`` for kinds of faces for which the library has no frame.
-    OSError
-        If the file cannot be written.
     """
     target = file_name(path)
     if isinstance(tracker, SolidTracker):

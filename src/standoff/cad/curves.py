@@ -56,12 +56,8 @@ def basis_of(curve: Any) -> Any:
 def converted(geometry: Any, first: float, last: float) -> Converted:
     """A Geom_Curve from first to last.
 
-    Raises
-    ------
-    NoExactForm
-        An offset curve, or a spline of too high a degree.
-    StandoffError
-        A curve without length.
+    Raises NoExactForm: an offset curve, or a spline of too high a degree. Raises StandoffError: a
+    curve without length.
     """
     curve = basis_of(geometry)
     kind = curve.DynamicType().Name()

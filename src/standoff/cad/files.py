@@ -46,13 +46,8 @@ def is_cad_file(name: str | Path) -> bool:
 def existing(path: Any) -> Path:
     """A path to a file that is there and not empty.
 
-    Raises
-    ------
-    StandoffTypeError
-        Not a path.
-    FileNotFoundError
-    CadError
-        An empty file, or a folder.
+    Raises StandoffTypeError: not a path. Raises FileNotFoundError. Raises CadError: an empty file,
+    or a folder.
     """
     if not isinstance(path, str | Path) or not str(path):
         raise StandoffTypeError(f"path = {shown(path)}: give the path of a file.", "path", path)

@@ -54,10 +54,7 @@ def at_place(instance: Instance) -> Any:
 def step_instances(file: Path, unit: str) -> tuple[list[Instance], str]:
     """The instances of a STEP file, and its unit.
 
-    Raises
-    ------
-    CadError
-        A file that OpenCASCADE can't read.
+    Raises CadError: a file that OpenCASCADE can't read.
     """
     from OCP.STEPCAFControl import STEPCAFControl_Reader
 

@@ -64,10 +64,8 @@ def pieces_of(solid: Any, size: float, original: Any, numbers: Sequence[int]) ->
     `original` is the solid before; edges that it lacks are isolines of their surfaces. `numbers`
     are those of its faces of which the solid's are parts.
 
-    Raises
-    ------
-    Refused
-        A curve or surface without an exact form, an edge without a curve, a face without edges.
+    Raises Refused: a curve or surface without an exact form, an edge without a curve, a face
+    without edges.
     """
     from OCP.BRepClass3d import BRepClass3d
 

@@ -122,6 +122,9 @@ def read_iges(
 ) -> Assembly:
     """The solids of an IGES file; its loose faces are sewn only with ``heal=True``.
 
+    Raises CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError as for
+    `read_step`.
+
     Parameters
     ----------
     path, unit, heal, keep, tolerance, workers : as for `read_step`.
@@ -129,11 +132,6 @@ def read_iges(
     Returns
     -------
     Assembly
-
-    Raises
-    ------
-    CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
-        As for `read_step`.
     """
     return _read(existing(path), "iges", _checked(unit, heal, keep, tolerance, workers))
 
@@ -148,6 +146,9 @@ def read_brep(
 ) -> Assembly:
     """The solids of a BREP file, OpenCASCADE's own, whose lengths have no unit.
 
+    Raises CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError as for
+    `read_step`.
+
     Parameters
     ----------
     path, heal, keep, tolerance, workers : as for `read_step`.
@@ -156,11 +157,6 @@ def read_brep(
     -------
     Assembly
         Its unit is empty: lengths are as in the file.
-
-    Raises
-    ------
-    CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
-        As for `read_step`.
     """
     return _read(existing(path), "brep", _checked("", heal, keep, tolerance, workers))
 
@@ -176,6 +172,9 @@ def read_cad(
 ) -> Assembly:
     """A file of any of these kinds, by its ending.
 
+    Raises CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError as for
+    `read_step`, and for another ending.
+
     Parameters
     ----------
     path, unit, heal, keep, tolerance, workers : as for `read_step`; a BREP file's lengths stay as
@@ -184,11 +183,6 @@ def read_cad(
     Returns
     -------
     Assembly
-
-    Raises
-    ------
-    CadError, FileNotFoundError, ModuleNotFoundError, StandoffError, TypeError
-        As for `read_step`, and for another ending.
     """
     file = existing(path)
     kind = ENDINGS.get(file.suffix.lower())
@@ -209,6 +203,9 @@ def from_shape(
 ) -> Assembly:
     """The solids of a shape of OpenCASCADE, or of an object that wraps one.
 
+    Raises CadError, ModuleNotFoundError, StandoffError, TypeError as for `read_step`; not such an
+    object.
+
     Parameters
     ----------
     shape : TopoDS_Shape, or an object of build123d or CadQuery
@@ -220,11 +217,6 @@ def from_shape(
     -------
     Assembly
         Lengths are as in the shape; those libraries think in millimetres.
-
-    Raises
-    ------
-    CadError, ModuleNotFoundError, StandoffError, TypeError
-        As for `read_step`; not such an object.
     """
     options = _checked("", heal, keep, tolerance, workers)
     from standoff.cad.instances import shape_instances
@@ -377,6 +369,9 @@ def common_volumes(
     """The volumes that parts of a file have in common where they are, by OpenCASCADE's boolean
     operations on the file's own shapes: nothing is proven of them.
 
+    Raises CadError, FileNotFoundError, ModuleNotFoundError as for `read_cad`; a name that no part
+    has.
+
     Parameters
     ----------
     path, unit : as for `read_cad`.
@@ -387,11 +382,6 @@ def common_volumes(
     -------
     dict of (str, str) to float or None
         [length³]; None where the operation fails.
-
-    Raises
-    ------
-    CadError, FileNotFoundError, ModuleNotFoundError
-        As for `read_cad`; a name that no part has.
     """
     file = existing(path)
     if not pairs:
@@ -411,6 +401,9 @@ def reports_of(
 ) -> tuple[PartReport, ...]:
     """What is found about every different solid of a file, refused ones included.
 
+    Raises CadError, FileNotFoundError, ModuleNotFoundError, TypeError as for `read_step`, but for
+    parts that are refused.
+
     Parameters
     ----------
     path : str or Path
@@ -421,11 +414,6 @@ def reports_of(
     Returns
     -------
     tuple of PartReport
-
-    Raises
-    ------
-    CadError, FileNotFoundError, ModuleNotFoundError, TypeError
-        As for `read_step`, but for parts that are refused.
     """
     file = existing(path)
     kind = ENDINGS.get(file.suffix.lower(), "brep")

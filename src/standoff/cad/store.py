@@ -52,10 +52,7 @@ class Entry(NamedTuple):
 def folder() -> Path:
     """Where the store is: what STANDOFF_CACHE_DIR or NUMBA_CACHE_DIR name, or else the user's.
 
-    Raises
-    ------
-    OSError
-        They name none, and the user has no home.
+    Raises OSError: they name none, and the user has no home.
     """
     if named := os.environ.get(FOLDER):
         return Path(named)
@@ -77,10 +74,7 @@ def folder() -> Path:
 def most_bytes() -> int:
     """How large the store may be; 0: it is not used.
 
-    Raises
-    ------
-    StandoffError
-        STANDOFF_CACHE_SIZE is no number, or below zero.
+    Raises StandoffError: STANDOFF_CACHE_SIZE is no number, or below zero.
     """
     given = os.environ.get(SIZE, str(STORE_MEGABYTES))
     try:

@@ -74,11 +74,8 @@ def basis_surface(geometry: Any) -> Any:
 def carrier(geometry: Any, over: Range) -> Carrier:
     """The surface of a face with these ranges of the file's parameters.
 
-    Raises
-    ------
-    NoExactForm
-        An offset surface, a profile that is not in a plane of its axis, a spline of too high a
-        degree.
+    Raises NoExactForm: an offset surface, a profile that is not in a plane of its axis, a spline of
+    too high a degree.
     """
     geometry = basis_surface(geometry)
     kind = geometry.DynamicType().Name().removeprefix("Geom_")

@@ -64,6 +64,8 @@ FEET_STEPS = 12
 def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcurve | None, str]:
     """The trimming curve of an edge, and how it was made: "exact", "file" or "fitted".
 
+    Raises NoExactForm: there is neither a trimming curve in the file nor a closed form to fit.
+
     Parameters
     ----------
     edge : Converted
@@ -79,11 +81,6 @@ def trim(edge: Converted, on: Carrier, geometry: Any, size: float) -> tuple[Pcur
     Pcurve or None
         None where the library finds the exact one by itself.
     str
-
-    Raises
-    ------
-    NoExactForm
-        There is neither a trimming curve in the file nor a closed form to fit.
     """
     curve, surface = edge.curve, on.surface
     if surface.projection is not None and isinstance(curve, Line | ConicArc):

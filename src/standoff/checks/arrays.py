@@ -31,11 +31,8 @@ def finite(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
     """Copy `value` to a read-only float64 array of the given shape (-1 matches any length; None:
     of any).
 
-    Raises
-    ------
-    StandoffError
-        Not numeric (strings and truth values are not), masked, of another shape, with a NaN, an
-        infinite number, or one beyond `GREATEST`.
+    Raises StandoffError: not numeric (strings and truth values are not), masked, of another shape,
+    with a NaN, an infinite number, or one beyond `GREATEST`.
     """
     copied = numbers(value, name, shape)
     if not np.isfinite(copied).all():

@@ -21,10 +21,8 @@ LEAST = 1e-50
 def number(value: Any, name: str) -> float:
     """Read one real number, not beyond `GREATEST`.
 
-    Raises
-    ------
-    StandoffError
-        Strings, truth values, complex numbers, arrays, masked numbers, NaN and infinity.
+    Raises StandoffError: strings, truth values, complex numbers, arrays, masked numbers, NaN and
+    infinity.
     """
     read = _real(value, name)
     if not math.isfinite(read):

@@ -69,9 +69,7 @@ def check_readable(value: Any) -> None:
     """Refuse masked numbers, in an array or in lists of arrays: NumPy's own conversions drop the
     mask and read what lies beneath as data. Refuse numbers on a device.
 
-    Raises
-    ------
-    UnreadableNumbers
+    Raises UnreadableNumbers.
     """
     waiting, seen = [value], set[int]()
     while waiting:
@@ -127,14 +125,9 @@ def real_array(value: Any, *, copy: bool = True) -> NDArray[np.float64]:
     NumPy itself would read strings, truth values and durations as numbers, None as NaN, and drop an
     imaginary part with only a warning.
 
-    Raises
-    ------
-    UnreadableNumbers
-        Some of them are masked, or on a device.
-    TypeError
-        Something in it is not a real number.
-    ValueError
-        Its rows differ in length, or it is nested too deeply.
+    Raises UnreadableNumbers: some of them are masked, or on a device. Raises TypeError: something
+    in it is not a real number. Raises ValueError: its rows differ in length, or it is nested too
+    deeply.
     """
     check_readable(value)
     given = as_given(value)
@@ -157,12 +150,8 @@ def as_given(value: Any) -> NDArray[Any]:
     """An array of what is given, with the elements of lists as they are, before NumPy gives them
     one type. An array of another library is read where it is, without a copy.
 
-    Raises
-    ------
-    UnreadableNumbers
-        The other library does not share it.
-    ValueError
-        Its rows differ in length.
+    Raises UnreadableNumbers: the other library does not share it. Raises ValueError: its rows
+    differ in length.
     """
     if isinstance(value, np.ndarray):
         return value

@@ -14,10 +14,7 @@ METRES = {"mm": 0.001, "cm": 0.01, "m": 1.0, "inch": 0.0254}
 def known_unit(unit: Any) -> str:
     """The name of a unit as it is.
 
-    Raises
-    ------
-    StandoffError
-        None of `METRES`.
+    Raises StandoffError: none of `METRES`.
     """
     if not isinstance(unit, str) or unit not in METRES:
         raise StandoffError(f"unit = {shown(unit)}: give one of {tuple(METRES)}.", "unit", unit)

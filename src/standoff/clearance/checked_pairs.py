@@ -57,6 +57,9 @@ def check(
 ) -> Report:
     """Report what is proven of the clearances of a world's pairs at some poses.
 
+    Raises StandoffError: a pattern that fits no body, a number out of its range, or as
+    `World.distances`.
+
     Parameters
     ----------
     world : World
@@ -74,11 +77,6 @@ def check(
     Returns
     -------
     Report
-
-    Raises
-    ------
-    StandoffError
-        A pattern that fits no body, a number out of its range, or as `World.distances`.
     """
     looked = narrowed(world, scope, wanted)
     here = {name: pose for name, pose in poses.items() if name in looked.bodies}
@@ -94,10 +92,7 @@ def narrowed(world: World, scope: Scope, wanted: Wanted) -> World:
     """Return a world of the pairs that are looked at, with the horizon that is given, or that is
     needed for a clearance that is wanted.
 
-    Raises
-    ------
-    StandoffError
-        As `check`.
+    Raises StandoffError as `check`.
     """
     for value, name in ((wanted.least, "least"), (wanted.tolerance, "tolerance")):
         if value is not None:
@@ -125,10 +120,7 @@ def narrowed(world: World, scope: Scope, wanted: Wanted) -> World:
 def _each(patterns: Sequence[str], names: Collection[str], argument: str) -> frozenset[str]:
     """The bodies that patterns fit.
 
-    Raises
-    ------
-    StandoffError
-        One that fits none.
+    Raises StandoffError: one that fits none.
     """
     for pattern in patterns:
         if not matching(pattern, names):

@@ -90,16 +90,13 @@ def fit_of(fits: Sequence[Fit], bodies: Collection[str]) -> Callable[[Sequence[s
 def load_fits(file: str | os.PathLike[str]) -> tuple[Fit, ...]:
     """Read a list of fits that are meant.
 
+    Raises SceneError if the file is missing or is not TOML, or anything in it is unknown, missing
+    or of the wrong type, or two entries are of one pair.
+
     Parameters
     ----------
     file : str or path
         A TOML file; docs/clearance.md describes the format.
-
-    Raises
-    ------
-    SceneError
-        If the file is missing or is not TOML, or anything in it is unknown, missing or of the wrong
-        type, or two entries are of one pair.
     """
     path = Path(file)
     try:

@@ -31,15 +31,13 @@ class AddedCommand(Protocol):
 def added(first: str) -> dict[str, type[AddedCommand]]:
     """Return the commands that other packages add, by name.
 
+    Raises CommandError if `first` is the name of one that is not installed, or that cannot be
+    imported.
+
     Parameters
     ----------
     first : str
         The first of the arguments. If it is the name of one, only that one is returned.
-
-    Raises
-    ------
-    CommandError
-        If `first` is the name of one that is not installed, or that cannot be imported.
     """
     found = {point.name: point for point in sorted(entry_points(group=GROUP))}
     if first in found:

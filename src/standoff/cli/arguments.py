@@ -414,13 +414,9 @@ OWN: dict[str, type] = {
 def parse(arguments: Sequence[str]) -> Command:
     """Return the command that the arguments give.
 
-    Raises
-    ------
-    SystemExit
-        With code 0 after help was printed, 2 after a complaint on stderr.
-    CommandError
-        If they name no command, or one of another package that is not installed or cannot be
-        loaded.
+    Raises SystemExit: with code 0 after help was printed, 2 after a complaint on stderr. Raises
+    CommandError if they name no command, or one of another package that is not installed or cannot
+    be loaded.
     """
     first = arguments[0] if arguments else ""
     # The library's own commands wait for nobody else's, and nobody replaces them.

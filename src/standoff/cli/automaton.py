@@ -36,12 +36,8 @@ BRANCH_TEXTS: Mapping[str, Callable[[SolidAutomaton, tuple[str, str]], str]] = {
 def run_automaton(command: AutomatonCommand) -> int:
     """List or draw the automata of the scene's pairs.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, an option or the output file is not usable.
-    WriteError
-        If the files could not be written.
+    Raises SceneError, CommandError if the scene, an option or the output file is not usable. Raises
+    WriteError if the files could not be written.
     """
     form = _format(command)
     if command.minima is not None and not command.visited:

@@ -17,12 +17,8 @@ from standoff.errors import StandoffError
 def run_c_library(command: LibraryCommand) -> int:
     """Build the library into a folder and say where it is.
 
-    Raises
-    ------
-    CommandError
-        If there is no compiler, or it fails.
-    WriteError
-        If the files could not be written.
+    Raises CommandError if there is no compiler, or it fails. Raises WriteError if the files could
+    not be written.
     """
     started = time.perf_counter()
     try:

@@ -14,12 +14,8 @@ from standoff.wording import counted
 def run_cache(command: CacheCommand) -> int:
     """Tell, or remove what is kept.
 
-    Raises
-    ------
-    CommandError
-        The environment gives no size, or no folder.
-    WriteError
-        If a file could not be removed.
+    Raises CommandError: the environment gives no size, or no folder. Raises WriteError if a file
+    could not be removed.
     """
     try:
         most, folder = store.most_bytes(), store.folder()

@@ -38,12 +38,8 @@ MOST_SPANS = 8
 def run_certify(command: CertifyCommand) -> int:
     """Print what is proven of a path; the exit code says whether it is all of it.
 
-    Raises
-    ------
-    CommandError, SceneError
-        The model, the path, an option or a file is not usable.
-    WriteError
-        The files could not be written after all.
+    Raises CommandError, SceneError: the model, the path, an option or a file is not usable. Raises
+    WriteError: the files could not be written after all.
     """
     _check_files(command)
     robot = _among(robot_of(command.model, command.robot), command.obstacles)

@@ -32,12 +32,8 @@ WIDTH = 100
 def run_check(command: CheckCommand) -> int:
     """Report what is known about each body.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, shape or file is not usable, which includes a body that is refused.
-    WriteError
-        If a picture could not be written.
+    Raises SceneError, CommandError if the scene, shape or file is not usable, which includes a body
+    that is refused. Raises WriteError if a picture could not be written.
     """
     no_cad_file(command.what, command.cad)
     check_meshes(Path(command.what), command.meshes)

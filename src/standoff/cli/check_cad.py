@@ -33,12 +33,8 @@ def no_cad_file(what: object, flags: CadFlags) -> None:
 def run_check_cad(command: CheckCommand) -> int:
     """Report every part, refused ones too.
 
-    Raises
-    ------
-    CommandError
-        If the file can't be read, has no readable part, or none of the name asked for.
-    WriteError
-        If a picture could not be written.
+    Raises CommandError if the file can't be read, has no readable part, or none of the name asked
+    for. Raises WriteError if a picture could not be written.
     """
     if command.meshes.hulls or command.meshes.pieces:
         from standoff.cli.part_file import check_meshes

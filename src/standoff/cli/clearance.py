@@ -29,12 +29,8 @@ from standoff.world import World
 def run_clearance(command: ClearanceCommand) -> int:
     """Print the clearance of all pairs; the exit code says whether all that is asked is proven.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, an option or a file is not usable.
-    WriteError
-        If the files could not be written after all.
+    Raises SceneError, CommandError if the scene, an option or a file is not usable. Raises
+    WriteError if the files could not be written after all.
     """
     check_options(command)
     check_meshes(command.scene, command.meshes)

@@ -36,12 +36,8 @@ NOTHING_MOVES = Looked(0.0, 0.0, 1)
 def run_on_assembly(command: ClearanceCommand) -> int:
     """Print the clearance of all pairs of parts; the exit code as for a scene.
 
-    Raises
-    ------
-    CommandError
-        If the file or an option is not usable.
-    WriteError
-        If the files could not be written after all.
+    Raises CommandError if the file or an option is not usable. Raises WriteError if the files could
+    not be written after all.
     """
     if command.motion or command.time is not None:
         raise CommandError("--time and --motion: the parts of an assembly's file are at rest")

@@ -14,10 +14,7 @@ from standoff.cli.output import PLOT_ENDINGS, Writer, check_target, kind_of_pict
 def check_files(command: ClearanceCommand) -> None:
     """Refuse files that could not be written, and import what draws them.
 
-    Raises
-    ------
-    WriteError
-    MissingExtra
+    Raises WriteError, MissingExtra.
     """
     if command.files.page is not None:
         check_target(command.files.page, "--page", (".html",))

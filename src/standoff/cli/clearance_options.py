@@ -15,9 +15,7 @@ from standoff.cli.errors import CommandError
 def check_options(command: ClearanceCommand) -> None:
     """Refuse numbers that are none, and options that do not go together.
 
-    Raises
-    ------
-    CommandError
+    Raises CommandError.
     """
     for value, name in ((command.min, "--min"), (command.min_tolerance, "--min-tolerance")):
         if value is not None and not 0.0 <= value < math.inf:

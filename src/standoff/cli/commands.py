@@ -27,12 +27,8 @@ from standoff.cli.arguments import (
 def run(command: Command) -> int:
     """Run a command; returns its exit code.
 
-    Raises
-    ------
-    CommandError, SceneError
-        If the input is not usable.
-    WriteError
-        If results could not be written.
+    Raises CommandError, SceneError if the input is not usable. Raises WriteError if results could
+    not be written.
     """
     # Each command imports its own module: tracking needs none of the others.
     match command:

@@ -15,10 +15,7 @@ def run_distance(command: DistanceCommand) -> int:
     """Print the pairs' certified distances at one instant; the exit code says whether they are
     certified.
 
-    Raises
-    ------
-    SceneError
-        If the scene, or the instant, is not usable.
+    Raises SceneError if the scene, or the instant, is not usable.
     """
     whole = load_scene(command.scene)
     scenes = chosen(whole, command.pair)

@@ -17,10 +17,7 @@ from standoff.scene import Scene, SceneError, first_impact, load_scene
 def run_impact(command: ImpactCommand) -> int:
     """Print the pairs' times of impact; the exit code says whether all are decided.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene or an option is not usable.
+    Raises SceneError, CommandError if the scene or an option is not usable.
     """
     whole = load_scene(command.scene)
     scenes = chosen(whole, command.pair)

@@ -39,11 +39,8 @@ def load_table(file: Path, robot: RobotModel) -> JointTable:
     """Read waypoints: numbers of q in their order, or columns named as the joints; with times if
     the first row names a column time or t.
 
-    Raises
-    ------
-    CommandError
-        The file is not there, not text, has no rows, rows of another length, words for numbers, or
-        names that no joint has.
+    Raises CommandError: the file is not there, not text, has no rows, rows of another length, words
+    for numbers, or names that no joint has.
     """
     try:
         text = file.read_text("utf-8-sig")

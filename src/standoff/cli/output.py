@@ -21,17 +21,14 @@ def check_results(
 ) -> None:
     """Refuse a table and a picture that could not be written after the run.
 
+    Raises CommandError as of `check_target`, or a missing library.
+
     Parameters
     ----------
     output, plot : Path or None
         What ``-o`` and ``--plot`` named.
     table, picture : str
         The modules that write them, imported now: a missing library is reported before the run.
-
-    Raises
-    ------
-    CommandError
-        As of `check_target`, or a missing library.
     """
     if output is not None:
         check_target(output, "-o", TABLE_ENDINGS)
@@ -53,6 +50,9 @@ def kind_of_picture(target: Path) -> str:
 def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
     """Refuse a file that could not be written later; nothing is left behind.
 
+    Raises CommandError if there is no name or the ending is not one of these, the folder is missing
+    or cannot be written, or the target is not a regular file.
+
     Parameters
     ----------
     target : Path
@@ -61,12 +61,6 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
         The option that named it, for the message.
     endings : sequence of str
         The file name endings that are understood, lower case, with their dot.
-
-    Raises
-    ------
-    CommandError
-        If there is no name or the ending is not one of these, the folder is missing or cannot be
-        written, or the target is not a regular file.
     """
     check_named(target, option)
     if target.suffix.lower() not in endings:
@@ -93,9 +87,7 @@ def check_target(target: Path, option: str, endings: Sequence[str]) -> None:
 def check_named(target: Path, option: str) -> None:
     """Refuse a path without a file name: an empty string, which means the current folder, or /.
 
-    Raises
-    ------
-    CommandError
+    Raises CommandError.
     """
     if not target.name:
         raise CommandError(
@@ -109,10 +101,8 @@ def picture_targets(plot: Path | None, names: Sequence[str]) -> list[Path]:
     """The files of the pictures of some bodies: the one of ``--plot``, or with each body's name at
     its end; none without the option.
 
-    Raises
-    ------
-    CommandError
-        If the option names no file of a known kind, or two bodies would be drawn to one.
+    Raises CommandError if the option names no file of a known kind, or two bodies would be drawn to
+    one.
     """
     if plot is None:
         return []
@@ -134,10 +124,7 @@ def picture_targets(plot: Path | None, names: Sequence[str]) -> list[Path]:
 def make_folder(folder: Path, option: str) -> None:
     """Make the folder of several files where there is none.
 
-    Raises
-    ------
-    CommandError
-        If it cannot be made, for instance because something else has its name.
+    Raises CommandError if it cannot be made, for instance because something else has its name.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -154,10 +141,7 @@ def make_folder(folder: Path, option: str) -> None:
 def write_whole(files: Mapping[Path, Writer]) -> None:
     """Write all of `files`, or, if one fails, none.
 
-    Raises
-    ------
-    WriteError
-        If a file cannot be written, as on a full disk.
+    Raises WriteError if a file cannot be written, as on a full disk.
     """
     try:
         whole_files.write_whole(files)

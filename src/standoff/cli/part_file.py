@@ -24,10 +24,8 @@ def is_part_file(name: str | Path) -> bool:
 def parts_of(path: Path, meshes: MeshFlags) -> FileParts:
     """The parts of a file, with lengths in mm where it tells their unit.
 
-    Raises
-    ------
-    CommandError
-        A file that is missing or refused, options that do not fit it, a package that is missing.
+    Raises CommandError: a file that is missing or refused, options that do not fit it, a package
+    that is missing.
     """
     problem = file_problem(path, str(path), "the current folder")
     if problem is not None:
@@ -47,9 +45,7 @@ def parts_of(path: Path, meshes: MeshFlags) -> FileParts:
 def check_meshes(path: Path, meshes: MeshFlags) -> None:
     """Refuse options of meshes for another file, and both at once.
 
-    Raises
-    ------
-    CommandError
+    Raises CommandError.
     """
     if meshes.hulls and meshes.pieces:
         raise CommandError("--hulls and --pieces: give one of them")

@@ -22,10 +22,7 @@ from standoff.wording import at_least
 def run_robot(command: RobotCommand) -> int:
     """Print the nearest pair at a configuration, and the report if it is asked for.
 
-    Raises
-    ------
-    CommandError
-        The model, an option or the configuration is not usable.
+    Raises CommandError: the model, an option or the configuration is not usable.
     """
     robot = robot_of(command.model, command.robot)
     q = robot.kinematics.neutral() if command.q is None else _numbers(command.q)

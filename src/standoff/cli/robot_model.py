@@ -26,10 +26,8 @@ OF_URDF = ("srdf", "packages", "free_base")
 def robot_of(model: Any, flags: RobotFlags, *, within: float | None = None) -> Robot:
     """The robot of an MJCF file (.xml, .mjcf) or of a URDF file (.urdf).
 
-    Raises
-    ------
-    CommandError
-        The file is not there or not usable, an option does not fit it, or its package is missing.
+    Raises CommandError: the file is not there or not usable, an option does not fit it, or its
+    package is missing.
     """
     from standoff.robots.model_files import ModelOptions, robot_of_file
 

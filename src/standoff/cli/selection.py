@@ -12,10 +12,7 @@ from standoff.scene import Scene, SceneError
 def chosen(scene: Scene, name: str | None) -> tuple[Scene, ...]:
     """Return the scene once for every pair, or once for the pair that ``--pair`` names.
 
-    Raises
-    ------
-    CommandError
-        If the scene has no such pair.
+    Raises CommandError if the scene has no such pair.
     """
     if name is None:
         return scene.each()
@@ -30,10 +27,7 @@ def target_of(
 ) -> Path | None:
     """Return the file of one pair: as the option names it, or with the pair's name at its end.
 
-    Raises
-    ------
-    CommandError
-        If the option names no file.
+    Raises CommandError if the option names no file.
     """
     if target is None or len(scenes) == 1:
         return target

@@ -37,12 +37,8 @@ MICRO = 1e6
 def run_servo(command: ServoCommand) -> int:
     """Run a scene in real time, write the log asked for, and print the summary.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, an option or the output file is not usable, or there is no device.
-    WriteError
-        If the log could not be written after all.
+    Raises SceneError, CommandError if the scene, an option or the output file is not usable, or
+    there is no device. Raises WriteError if the log could not be written after all.
     """
     check_results(command.output, "standoff.servo.file")
     rate = command.rate

@@ -26,12 +26,8 @@ from standoff.wording import counted
 def run_simulate(command: SimulateCommand) -> int:
     """Simulate, write the files asked for, and print the summary.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, an option or an output file is not usable, or the motion left all bounds.
-    WriteError
-        If the files could not be written after all.
+    Raises SceneError, CommandError if the scene, an option or an output file is not usable, or the
+    motion left all bounds. Raises WriteError if the files could not be written after all.
     """
     given = {name: getattr(command, name) for name in ("step", "duration", "method", "tracker")}
     scene = load_simulation(command.scene, given)

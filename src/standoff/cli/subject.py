@@ -36,12 +36,8 @@ class Subject(NamedTuple):
 def subjects(command: CheckCommand) -> list[Subject]:
     """Return the bodies that a command names; its `body` picks one of them.
 
-    Raises
-    ------
-    CommandError
-        If it names no scene, no file and no shape, or what it names has no such body.
-    SceneError
-        If the scene or the shape is refused.
+    Raises CommandError if it names no scene, no file and no shape, or what it names has no such
+    body. Raises SceneError if the scene or the shape is refused.
     """
     what, body = command.what, command.body
     path = Path(what)

@@ -45,12 +45,8 @@ JSON_ROWS = 10
 def run_sweep_command(command: SweepCommand) -> int:
     """Run a sweep, or go on with it; the exit code says whether all rows keep what is asked.
 
-    Raises
-    ------
-    SceneError, CommandError
-        The job, an option or the folder is not usable.
-    WriteError
-        A file could not be written.
+    Raises SceneError, CommandError: the job, an option or the folder is not usable. Raises
+    WriteError: a file could not be written.
     """
     _check(command)
     job = load_job(command.job)

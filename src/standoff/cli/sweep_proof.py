@@ -36,9 +36,7 @@ JSON_PLACES = 10
 def clearance_of(text: str) -> float:
     """Return the length that ``--prove`` names.
 
-    Raises
-    ------
-    CommandError
+    Raises CommandError.
     """
     told = f"--prove: give the length that is to be kept, such as: --prove {ASKED}0.005"
     if not text.startswith(ASKED):
@@ -55,9 +53,7 @@ def clearance_of(text: str) -> float:
 def check_proof_options(command: SweepCommand) -> None:
     """Refuse what does not go with ``--prove``, before the job is read.
 
-    Raises
-    ------
-    CommandError
+    Raises CommandError.
     """
     if command.prove is None:
         return

@@ -33,12 +33,8 @@ def run_track(command: TrackCommand) -> int:
 
     Everything that can be refused is refused before the first frame.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, an option or an output file is not usable.
-    WriteError
-        If the files could not be written after all.
+    Raises SceneError, CommandError if the scene, an option or an output file is not usable. Raises
+    WriteError if the files could not be written after all.
     """
     whole = load_scene(command.scene)
     if not whole.pairs:
@@ -131,10 +127,7 @@ class _Run(NamedTuple):
 def settings_of(scene: Scene, command: TrackCommand) -> TrackSettings:
     """Return the scene's settings with the command's in their place.
 
-    Raises
-    ------
-    CommandError
-        If an option is not one that a scene could have.
+    Raises CommandError if an option is not one that a scene could have.
     """
     times = vars(command.times)
     texts = vars(command.options) | vars(command.paper_options) | vars(command.solid_options)

@@ -31,12 +31,8 @@ WORKS = ("tracked", "started", "resting", "bounded", "sought")
 def run_track_world(command: TrackCommand, scene: Scene, settings: TrackSettings) -> int:
     """Track all near pairs, write the files asked for, and print the summary.
 
-    Raises
-    ------
-    SceneError, CommandError
-        If the scene, an option or an output file is not usable.
-    WriteError
-        If the files could not be written after all.
+    Raises SceneError, CommandError if the scene, an option or an output file is not usable. Raises
+    WriteError if the files could not be written after all.
     """
     _check(command)
     if settings.minima is not None:
@@ -81,9 +77,7 @@ def run_track_world(command: TrackCommand, scene: Scene, settings: TrackSettings
 def _check(command: TrackCommand) -> None:
     """Refuse options of pairs.
 
-    Raises
-    ------
-    CommandError
+    Raises CommandError.
     """
     if command.pair is not None:
         raise CommandError("--pair: the scene has a [world] and no pair; leave it out, or add one")

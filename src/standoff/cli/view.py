@@ -24,12 +24,8 @@ from standoff.world import World
 def run_view(command: ViewCommand) -> int:
     """Serve the page until it is interrupted.
 
-    Raises
-    ------
-    CommandError
-        If viser is not installed, or the port is not available.
-    SceneError
-        If the scene is not usable.
+    Raises CommandError if viser is not installed, or the port is not available. Raises SceneError
+    if the scene is not usable.
     """
     check_meshes(command.scene, command.meshes)
     if command.scene.suffix.lower() in ENDINGS:

@@ -62,6 +62,9 @@ def basin(
 ) -> Basin:
     """Run a tracker at rest from many starts and compare with the certified minimum.
 
+    Raises TypeError: no tracker. Raises ValueError: no frames or starts, a start outside its
+    feature, or a pair without a certified distance.
+
     Parameters
     ----------
     tracker : Tracker
@@ -76,13 +79,6 @@ def basin(
     Returns
     -------
     Basin
-
-    Raises
-    ------
-    TypeError
-        No tracker.
-    ValueError
-        No frames or starts, a start outside its feature, or a pair without a certified distance.
     """
     if not isinstance(tracker, Tracker):
         raise StandoffTypeError(

@@ -53,6 +53,8 @@ def least_curvature(body: Body) -> LeastCurvature:
     that sum to 1 or more. So the faces tell for all modes. A vertex has no parameter, hence no
     curvature to count.
 
+    Raises TypeError: not a body.
+
     Parameters
     ----------
     body : Body
@@ -63,11 +65,6 @@ def least_curvature(body: Body) -> LeastCurvature:
     LeastCurvature
         Planes, cylinders, cones, straight edges: 0. An ellipsoid of semi-axes a >= b >= c: c/a²,
         an ellipse likewise. Other kinds are searched.
-
-    Raises
-    ------
-    TypeError
-        Not a body.
     """
     check_body(body)
     found = [_of_face(body, k) for k in range(body.n_faces)]
@@ -83,6 +80,8 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
 
     A sphere whose f_u x f_v points outwards has (-1/r, -1/r).
 
+    Raises ValueError: not a surface, or a parameter that is not a finite number.
+
     Parameters
     ----------
     surface : Surface
@@ -92,11 +91,6 @@ def principal_curvatures(surface: Surface, u: float, v: float) -> tuple[float, f
     Returns
     -------
     (float, float) or None
-
-    Raises
-    ------
-    ValueError
-        Not a surface, or a parameter that is not a finite number.
     """
     if not isinstance(surface, Surface):
         raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)

@@ -42,6 +42,11 @@ def min_gain(
     to first order in the errors over the bodies' radii of curvature. With the feedforward there is
     no such lag: give a speed of 0.
 
+    Raises TypeError: not a body. Raises ValueError: numbers that are negative, NaN or not in order;
+    a planar body with a spatial one; a start beyond its basin; a time shorter than a step. Or no
+    stable gain is enough: the message has the step that would do, and the error that can be kept
+    with this one.
+
     Parameters
     ----------
     a, b : Body
@@ -69,15 +74,6 @@ def min_gain(
         K, 1/s. inf where no gain can guarantee the error: both bodies flat or straight somewhere
         (two boxes), contact, or a spin at any distance about a body with a flat place. 0 for two
         points, which have no parameters.
-
-    Raises
-    ------
-    TypeError
-        Not a body.
-    ValueError
-        Numbers that are negative, NaN or not in order; a planar body with a spatial one; a start
-        beyond its basin; a time shorter than a step. Or no stable gain is enough: the message has
-        the step that would do, and the error that can be kept with this one.
 
     See Also
     --------
@@ -203,6 +199,9 @@ def witness_speeds(
     and |w_B| with A and B exchanged in the first factor: docs/laws.md derives it. The greatest
     value over a range of distances is returned.
 
+    Raises ValueError: numbers that are negative, NaN or not in order, or a speed that is not
+    finite.
+
     Parameters
     ----------
     curvature_a, curvature_b : float
@@ -218,11 +217,6 @@ def witness_speeds(
     -------
     (float, float)
         Of A's and of B's witness point, length/s; inf where there is no bound.
-
-    Raises
-    ------
-    ValueError
-        Numbers that are negative, NaN or not in order, or a speed that is not finite.
     """
     curvature_a, curvature_b = _curvature(curvature_a), _curvature(curvature_b)
     speed, spin = _motion(speed, spin)
@@ -290,6 +284,9 @@ def least_eigenvalue(curvature_a: float, curvature_b: float, distance: float) ->
     1 + d (kA + kB)/2 - sqrt(1 + (d (kA - kB)/2)²), for least curvatures kA, kB and distance d;
     against a point 1 + d k. It is 0 at contact and where both bodies may be flat.
 
+    Raises ValueError: a curvature that is negative or NaN, a distance that is negative or not
+    finite.
+
     Parameters
     ----------
     curvature_a, curvature_b : float
@@ -301,11 +298,6 @@ def least_eigenvalue(curvature_a: float, curvature_b: float, distance: float) ->
     -------
     float
         Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        A curvature that is negative or NaN, a distance that is negative or not finite.
     """
     curvature_a, curvature_b = _curvature(curvature_a), _curvature(curvature_b)
     distance = not_negative(distance, "distance")
@@ -327,6 +319,8 @@ def reach(body: Body) -> float:
     Exact where it is made of vertices and straight or plane parts, or of a whole ellipsoid about
     its origin; else the farthest corner of its box.
 
+    Raises TypeError: not a body.
+
     Parameters
     ----------
     body : Body
@@ -335,11 +329,6 @@ def reach(body: Body) -> float:
     -------
     float
         Length; inf for a half-space.
-
-    Raises
-    ------
-    TypeError
-        Not a body.
     """
     check_body(body)
     if not body.bounded:

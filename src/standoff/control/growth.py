@@ -23,6 +23,8 @@ Complex = NDArray[np.complex128]
 def growth_polynomial(integrator: str) -> Polynomial:
     """R(x) as a polynomial: a step of length h multiplies an error with e' = rate e by R(rate h).
 
+    Raises ValueError: unknown integrator.
+
     Parameters
     ----------
     integrator : "euler", "heun", "midpoint" or "rk4"
@@ -32,11 +34,6 @@ def growth_polynomial(integrator: str) -> Polynomial:
     numpy.polynomial.Polynomial
         In x = rate h, real or complex; the paper's law has rate = -K. Worked out from the tableau
         that the kernels step with: stage i has k_i = rate (1 + c_i h k_(i-1)).
-
-    Raises
-    ------
-    ValueError
-        Unknown integrator.
     """
     number = I.NAMES.index(choice(integrator, "integrator", I.NAMES))
     x = Polynomial([0.0, 1.0])
@@ -50,6 +47,8 @@ def growth_polynomial(integrator: str) -> Polynomial:
 def stability_limit(integrator: str) -> float:
     """The least z = K h > 0 at which |R(-z)| reaches 1: beyond it the errors grow.
 
+    Raises ValueError: unknown integrator.
+
     Parameters
     ----------
     integrator : "euler", "heun", "midpoint" or "rk4"
@@ -58,11 +57,6 @@ def stability_limit(integrator: str) -> float:
     -------
     float
         Gain times step, dimensionless.
-
-    Raises
-    ------
-    ValueError
-        Unknown integrator.
     """
     factor = growth_polynomial(integrator)
     crossings = np.concatenate([(factor - 1.0).roots(), (factor + 1.0).roots()])
@@ -72,6 +66,9 @@ def stability_limit(integrator: str) -> float:
 
 def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:
     """The roots of the sampled error loop: R(rate dt) for each rate of a feedback.
+
+    Raises TypeError: not a feedback. Raises ValueError: unknown integrator; a step that is not
+    positive; a feedback that does not go with them.
 
     Parameters
     ----------
@@ -84,13 +81,6 @@ def sampled_roots(integrator: str, feedback: Feedback, dt: float) -> Complex:
     -------
     (n,) complex array
         Inside the unit circle the loop is stable. As the gain grows they draw the root locus.
-
-    Raises
-    ------
-    TypeError
-        Not a feedback.
-    ValueError
-        Unknown integrator; a step that is not positive; a feedback that does not go with them.
     """
     step = positive(dt, "dt")
     choice(integrator, "integrator", I.NAMES)
@@ -109,6 +99,8 @@ def steady_error(integrator: str, gain: float, dt: float, acceleration: float) -
     With q*(t) = a t²/2 the law integrates q' = -K (q - q*) + q*'. A step from q = q* = 0 ends at
     an error c a h² and multiplies an error before it by R: the two balance at c a h² / (1 - R).
 
+    Raises ValueError: unknown integrator; a gain that is not stable; numbers that are not positive.
+
     Parameters
     ----------
     integrator : str
@@ -123,11 +115,6 @@ def steady_error(integrator: str, gain: float, dt: float, acceleration: float) -
     -------
     float
         h a / (2 K) for Euler, h² a / (4 (1 - K h/2)) for Heun.
-
-    Raises
-    ------
-    ValueError
-        Unknown integrator; a gain that is not stable; numbers that are not positive.
     """
     gain, dt = positive(gain, "gain"), positive(dt, "dt")
     z, number = gain * dt, I.NAMES.index(choice(integrator, "integrator", I.NAMES))
@@ -154,6 +141,8 @@ def euler_min_gain(error: float, acceleration: float, dt: float) -> float:
     The other integrators' steady error of h² a / 4 or less cannot be reduced with gain: take a
     shorter step.
 
+    Raises ValueError: an error or a step that is not positive, a negative acceleration.
+
     Parameters
     ----------
     error : float
@@ -167,11 +156,6 @@ def euler_min_gain(error: float, acceleration: float, dt: float) -> float:
     -------
     float
         K, 1/s; inf where Euler would not be stable with it (2/dt and above).
-
-    Raises
-    ------
-    ValueError
-        An error or a step that is not positive, a negative acceleration.
     """
     dt = positive(dt, "dt")
     gain = dt * not_negative(acceleration, "acceleration") / (2.0 * positive(error, "error"))

@@ -100,6 +100,10 @@ def lyapunov_level(
 ) -> LyapunovLevels:
     """The largest level sets of both Lyapunov functions at the minimum of a pair at rest.
 
+    Raises TypeError: not a body. Raises ValueError: `directions` or `seed` is not a whole number.
+    The pair overlaps or touches; H is not positive definite at its optimum (parallel faces), or the
+    witness points are vertices, which have no parameters.
+
     Parameters
     ----------
     a, b : Body
@@ -114,15 +118,6 @@ def lyapunov_level(
     -------
     LyapunovLevels
         On a face with an atlas, in the optimum's chart as far as a tracker stays in it.
-
-    Raises
-    ------
-    TypeError
-        Not a body.
-    ValueError
-        `directions` or `seed` is not a whole number. The pair overlaps or touches; H is not
-        positive definite at its optimum (parallel faces), or the witness points are vertices,
-        which have no parameters.
     """
     directions = whole_number(directions, "directions")
     seed = whole_number(seed, "seed", 0)

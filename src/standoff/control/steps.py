@@ -47,6 +47,8 @@ def step_growth(
     Where V falls over two steps from every start within a level, all of them converge. Tried on the
     curves of `levels` at 49 errors each: between them it is not proven.
 
+    Raises TypeError: no tracker or levels. Raises ValueError: levels of another pair or pose.
+
     Parameters
     ----------
     tracker : Tracker
@@ -58,13 +60,6 @@ def step_growth(
     Returns
     -------
     StepGrowth
-
-    Raises
-    ------
-    TypeError
-        No tracker or levels.
-    ValueError
-        Levels of another pair or pose.
     """
     for given, kind in ((tracker, Tracker), (levels, LyapunovLevels)):
         if not isinstance(given, kind):

@@ -38,6 +38,9 @@ class Maker(Protocol):
 class Design:
     """A body as a function of named parameters: its shape can be differentiated by them.
 
+    Raises TypeError: `make` is not a function, or returned no body. Raises ValueError: no
+    parameter; a parameter that is not of finite numbers.
+
     Parameters
     ----------
     make : callable
@@ -53,13 +56,6 @@ class Design:
     parameters : dict of str to float or array
     body : Body, Solid or PlanarSolid
         Made at first use.
-
-    Raises
-    ------
-    TypeError
-        `make` is not a function, or returned no body.
-    ValueError
-        No parameter; a parameter that is not of finite numbers.
 
     Examples
     --------
@@ -86,10 +82,7 @@ class Design:
     def changed(self, **parameters: Any) -> Design:
         """The same design with other values of some parameters.
 
-        Raises
-        ------
-        ValueError
-            A name that is none of the parameters.
+        Raises ValueError: a name that is none of the parameters.
         """
         unknown = parameters.keys() - self.parameters.keys()
         if unknown:
@@ -103,10 +96,7 @@ class Design:
         """The same design, of which only some parameters are still parameters: the others keep
         their values, and no time is spent on their derivatives.
 
-        Raises
-        ------
-        ValueError
-            No name, or one that is none of the parameters.
+        Raises ValueError: no name, or one that is none of the parameters.
         """
         for name in names:
             choice(name, "names", self.parameters)
@@ -117,6 +107,8 @@ class Design:
         self, feature: Feature, parameters: tuple[float, ...], normal: Array
     ) -> dict[str, float | Array]:
         """How fast the boundary moves along a normal, by each parameter, at a place of it.
+
+        Raises ValueError: a parameter's neighbours make no body, or one with other features.
 
         Parameters
         ----------
@@ -129,11 +121,6 @@ class Design:
         -------
         dict of str to float or array
             Length per unit of the parameter, in the parameter's shape.
-
-        Raises
-        ------
-        ValueError
-            A parameter's neighbours make no body, or one with other features.
         """
         group = group_of(boundary_of(self.body), feature, parameters)
         found = self.rates_of([group], np.array([finite(normal, "normal", (3,))]))

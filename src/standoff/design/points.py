@@ -47,6 +47,8 @@ def group_of(
 ) -> Group:
     """The group of a single place.
 
+    Raises StandoffError: the boundary has no such feature, or no such chart of it.
+
     Parameters
     ----------
     body : Boundary or PlanarSolid
@@ -54,11 +56,6 @@ def group_of(
         As answers name them.
     witness : (3,) array, optional
         About where it is, body frame: tells the chart where the parameters do not (of solids).
-
-    Raises
-    ------
-    StandoffError
-        The boundary has no such feature, or no such chart of it.
     """
     counts = _counts(body)
     if not 0 <= feature.index < counts.get(feature.kind, 0):

@@ -93,6 +93,10 @@ def shape_gradient(
 ) -> ShapeGradient | ShapeGradientArrays:
     """The derivatives of an answer's distance by the parameters of designs (docs/design.md).
 
+    Raises TypeError: something else than an answer or a design. Raises ValueError: no design; an
+    answer of other bodies or of a compound, or a single one without witness points; parameters
+    whose neighbours make no body or one with other features.
+
     Parameters
     ----------
     answer : Proximity, SolidProximity, Distances or Answers
@@ -104,14 +108,6 @@ def shape_gradient(
     -------
     ShapeGradient
         Of `Distances` and `Answers` a `ShapeGradientArrays`.
-
-    Raises
-    ------
-    TypeError
-        Something else than an answer or a design.
-    ValueError
-        No design; an answer of other bodies or of a compound, or a single one without witness
-        points; parameters whose neighbours make no body or one with other features.
 
     Notes
     -----

@@ -48,6 +48,9 @@ class Inverse3(BoundToRun):
     beyond a hand's reach sets the force to zero before the next message is sent, and it stays zero
     until the loop is engaged again. A service that is gone is not contacted again.
 
+    Raises StandoffTypeError: an address or name that is not a string. Raises StandoffError: a
+    period that is not above zero; no pose.
+
     Parameters
     ----------
     url : str
@@ -66,13 +69,6 @@ class Inverse3(BoundToRun):
         Why it no longer gives readings, and what to do.
     frames, refused : int
         Messages received, and how many of them were faulty.
-
-    Raises
-    ------
-    StandoffTypeError
-        An address or name that is not a string.
-    StandoffError
-        A period that is not above zero; no pose.
     """
 
     def __init__(
@@ -97,12 +93,8 @@ class Inverse3(BoundToRun):
     def attach(self, port: Port) -> None:
         """Connect, and begin to give readings to a port.
 
-        Raises
-        ------
-        DeviceError
-            No service answers, or it has no such device.
-        ModuleNotFoundError
-            Without the extra 'devices'.
+        Raises DeviceError: no service answers, or it has no such device. Raises
+        ModuleNotFoundError: without the extra 'devices'.
         """
         if self._thread is not None:
             raise DeviceError("the Inverse3 moves another loop's handle; stop that loop first")

@@ -25,6 +25,8 @@ class PointerDevice(BoundToRun):
     that takes them needs a `max_age` above the longest pause between two of them, or calls of `put`
     while the pointer rests.
 
+    Raises StandoffError: not a pose.
+
     Parameters
     ----------
     pose : Pose or what `Pose.of` reads, optional
@@ -34,11 +36,6 @@ class PointerDevice(BoundToRun):
     ----------
     problem : str
         Why it no longer gives readings.
-
-    Raises
-    ------
-    StandoffError
-        Not a pose.
     """
 
     def __init__(self, pose: PoseLike | None = None) -> None:
@@ -52,10 +49,7 @@ class PointerDevice(BoundToRun):
     def attach(self, port: Port) -> None:
         """Begin to give readings to a port.
 
-        Raises
-        ------
-        DeviceError
-            It gives them to another one.
+        Raises DeviceError: it gives them to another one.
         """
         with self._lock:
             if self._port is not None:
@@ -70,6 +64,9 @@ class PointerDevice(BoundToRun):
     def put(self, at: PoseLike | ArrayLike, stamp: float | None = None) -> None:
         """Say where the pointer is.
 
+        Raises StandoffError: neither a position nor a pose, or not finite. The handle stays where
+        it was, and its reading grows old.
+
         Parameters
         ----------
         at : array_like, shape (3,), Pose or what `Pose.of` reads
@@ -77,12 +74,6 @@ class PointerDevice(BoundToRun):
         stamp : float, optional
             When it was there, on the clock of `time.monotonic()` [s]; now if not given. One that
             is not newer than the last counts as a repetition of it, and is dropped.
-
-        Raises
-        ------
-        StandoffError
-            Neither a position nor a pose, or not finite. The handle stays where it was, and
-            its reading grows old.
         """
         pose = self._read(at)
         when = time.monotonic() if stamp is None else number(stamp, "stamp")

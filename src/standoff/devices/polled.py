@@ -19,6 +19,9 @@ class Polled(BoundToRun):
     Python reads it, and is late now and then; what matters is that a late reading is recognised as
     late.
 
+    Raises StandoffTypeError: not a device. Raises StandoffError: a period that is not above zero; a
+    flag that is neither true nor false.
+
     Parameters
     ----------
     device : Device
@@ -32,13 +35,6 @@ class Polled(BoundToRun):
     ----------
     problem : str
         Why it no longer gives readings.
-
-    Raises
-    ------
-    StandoffTypeError
-        Not a device.
-    StandoffError
-        A period that is not above zero; a flag that is neither true nor false.
     """
 
     def __init__(self, device: Device, *, period: float, stamped: bool = True) -> None:
@@ -57,10 +53,7 @@ class Polled(BoundToRun):
     def attach(self, port: Port) -> None:
         """Open the device, and begin to give readings to a port.
 
-        Raises
-        ------
-        DeviceError
-            There is no device, or it gives its readings to another port.
+        Raises DeviceError: there is no device, or it gives its readings to another port.
         """
         if self._thread is not None:
             raise DeviceError("the device moves another loop's handle; stop that loop first")

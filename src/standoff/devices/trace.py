@@ -33,6 +33,9 @@ class Trace(KeepsReadOnly):
     machine. Between samples it moves as `PoseSamples` does. Each reading is as old as the tick that
     takes it.
 
+    Raises StandoffTypeError: not a path. Raises StandoffError: an end that is not after the start;
+    a flag that is neither true nor false.
+
     Parameters
     ----------
     path : Path or function of the time
@@ -42,13 +45,6 @@ class Trace(KeepsReadOnly):
     there_and_back : bool
         Play it to its end, then backwards to its start, and so on; else, when it is over, there are
         no more readings, and the force is zero.
-
-    Raises
-    ------
-    StandoffTypeError
-        Not a path.
-    StandoffError
-        An end that is not after the start; a flag that is neither true nor false.
     """
 
     path: Path
@@ -77,6 +73,8 @@ class Trace(KeepsReadOnly):
     def read(cls, file: str | os.PathLike[str], *, there_and_back: bool = False) -> Trace:
         """Read a recorded motion: what a servo logged, or any file of `read_pose_samples`.
 
+        Raises StandoffError, OSError, ModuleNotFoundError as `standoff.motion.read_pose_samples`.
+
         Parameters
         ----------
         file : str or path
@@ -84,11 +82,6 @@ class Trace(KeepsReadOnly):
             has them of its handle; or ``.csv``, ``.tum``.
         there_and_back : bool
             As above.
-
-        Raises
-        ------
-        StandoffError, OSError, ModuleNotFoundError
-            As `standoff.motion.read_pose_samples`.
         """
         samples: PoseSamples = read_pose_samples(file)
         return cls(samples, samples.start, samples.end, there_and_back=there_and_back)
@@ -101,6 +94,8 @@ class Trace(KeepsReadOnly):
     def rows(self, period: float) -> Array:
         """Return its readings as the kernels read them, one per period.
 
+        Raises StandoffError: more than a million readings, or less than two.
+
         Parameters
         ----------
         period : float
@@ -110,11 +105,6 @@ class Trace(KeepsReadOnly):
         -------
         (n, m) array
             Laid out in ``standoff.kernels.dynamics.coupler_arrays``, stamps from 0 on.
-
-        Raises
-        ------
-        StandoffError
-            More than a million readings, or less than two.
         """
         seconds = positive(period, "period")
         count = int(self.duration / seconds * (1.0 + PERIOD_ROUNDING)) + 1

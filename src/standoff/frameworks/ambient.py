@@ -104,10 +104,7 @@ class Rows(NamedTuple):
 def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
     """Distances (...) at poses (..., 4, 4), which are broadcast.
 
-    Raises
-    ------
-    StandoffError
-        If a matrix is not a pose; the first such row is named.
+    Raises StandoffError if a matrix is not a pose; the first such row is named.
     """
     rows, lead = _rows(pair, poses_a, poses_b, 0)
     return rows.distance.reshape(lead)
@@ -171,10 +168,7 @@ def flat_poses(poses: Sequence[Array], lead: tuple[int, ...]) -> list[Array]:
 def answered(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
     """Answers at poses (n, 4, 4), or (1, 4, 4) for all, with their derivatives by twists.
 
-    Raises
-    ------
-    StandoffError
-        If a matrix is not a pose; the first such row is named.
+    Raises StandoffError if a matrix is not a pose; the first such row is named.
     """
     return (_one if len(poses[0]) == len(poses[1]) == 1 else _many)(pair, poses, order)
 

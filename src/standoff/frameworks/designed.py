@@ -85,9 +85,7 @@ class Designs(NamedTuple):
     def lead(self, shapes: Sequence[Shape]) -> Shape:
         """The common leading shape of arrays of these shapes: () of one row, (n,) of n.
 
-        Raises
-        ------
-        StandoffError
+        Raises StandoffError.
         """
         leads: dict[str, Shape] = {}
         for label, shape, own in zip(self.labels, shapes, self.shapes, strict=True):
@@ -128,10 +126,7 @@ class Set(NamedTuple):
 def value(designs: Designs, *given: Array) -> Array:
     """Distances (...) of arrays in the order of ``designs.labels``, which are broadcast.
 
-    Raises
-    ------
-    StandoffError
-        Parameters that make no body; a matrix that is no pose.
+    Raises StandoffError: parameters that make no body; a matrix that is no pose.
     """
     lead = designs.lead([x.shape for x in given])
     distance = np.empty(prod(lead))

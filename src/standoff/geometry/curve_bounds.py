@@ -20,10 +20,7 @@ def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> fl
     It is exact for lines and conic arcs, from the subdivided control points of the piece for
     rational curves, and from the whole curve's box for formulas.
 
-    Raises
-    ------
-    ValueError
-        A kind of curve without bounds.
+    Raises ValueError: a kind of curve without bounds.
     """
     if isinstance(curve, Line | ConicArc):
         ends = [float(direction @ curve.point(t)) for t in (first, last)]

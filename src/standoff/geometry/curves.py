@@ -92,10 +92,7 @@ class Curve(KeepsReadOnly):
     def jets_over(self, t: Interval) -> Interval:
         """(3, 3, n) bounds of (x, x_t, x_tt) over ranges of t, none across the end of a span.
 
-        Raises
-        ------
-        StandoffError
-            A kind of curve without bounds.
+        Raises StandoffError: a kind of curve without bounds.
         """
         raise StandoffError(f"{type(self).__name__} has no bounds: it cannot be a profile.")
 
@@ -143,15 +140,12 @@ def _affine(linear: Array, shift: Array) -> Array:
 class Line(Curve):
     """The segment from p (t = 0) to q (t = 1).
 
+    Raises ValueError: a wrong shape, a number that is not finite, or twice the same point.
+
     Parameters
     ----------
     p, q : (3,) array_like, or (2,) in the plane z = 0
         Two different points, length.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, or twice the same point.
     """
 
     kind = L.LINE
@@ -178,17 +172,15 @@ class ConicArc(Curve):
 
     Arcs of parabolas and hyperbolas are rational Bezier curves of degree 2.
 
+    Raises ValueError: a wrong shape, a number that is not finite, parallel or zero axes, a wrong
+    range.
+
     Parameters
     ----------
     centre, a, b : (3,) array_like, or (2,) in the plane z = 0
         Centre and two conjugate semi-axes, not parallel; length.
     first, last : float
         Eccentric angles, radians, with 0 < last - first <= 2 pi.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, parallel or zero axes, a wrong range.
     """
 
     kind = L.CONIC
@@ -236,18 +228,15 @@ class ConicArc(Curve):
 class RationalBezier(Curve):
     """A rational Bezier curve on [0, 1].
 
+    Raises ValueError: a wrong shape, a number that is not finite, a single point, repeated end
+    points, weights that are not positive or differ too much.
+
     Parameters
     ----------
     control_points : (n + 1, 3) array_like, or (n + 1, 2) in the plane z = 0
         At least two, length; the first two differ, and the last two.
     weights : (n + 1,) array_like, optional
         Positive, within a factor of 1e12, dimensionless; ones by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a single point, repeated end points, weights
-        that are not positive or differ too much.
     """
 
     kind = L.BEZIER

@@ -22,6 +22,8 @@ from standoff.geometry.validation import Array
 def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
     """Six rational patches of degree (4, 4) that tile the ellipsoid, f_u x f_v outward.
 
+    Raises ValueError: a semi-axis that is not finite or not positive.
+
     Parameters
     ----------
     a, b, c : float
@@ -30,11 +32,6 @@ def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
     Returns
     -------
     tuple of BezierPatch
-
-    Raises
-    ------
-    ValueError
-        A semi-axis that is not finite or not positive.
     """
     axes = _semi_axes(a, b, c)
     points, weights = _cube_tile()
@@ -48,6 +45,8 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
 
     f_u x f_v points outward; the poles lie on z.
 
+    Raises ValueError: a semi-axis that is not finite or not positive.
+
     Parameters
     ----------
     a, b, c : float
@@ -56,11 +55,6 @@ def ellipsoid_octants(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:
     Returns
     -------
     tuple of BezierPatch
-
-    Raises
-    ------
-    ValueError
-        A semi-axis that is not finite or not positive.
     """
     axes = _semi_axes(a, b, c)
     round_ = np.array([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -24,6 +24,9 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
 
     A curve that was made on the surface has its own (`Curve.pcurve_on`).
 
+    Raises ValueError: not a curve, not a surface, or kinds for which the pcurve is not a line or
+    conic in (u, v).
+
     Parameters
     ----------
     curve : Curve
@@ -35,11 +38,6 @@ def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:
     -------
     Pcurve
         With the curve's own parameter.
-
-    Raises
-    ------
-    ValueError
-        Not a curve, not a surface, or kinds for which the pcurve is not a line or conic in (u, v).
     """
     if not isinstance(curve, Curve):
         raise StandoffError(f"curve is {shown(curve)}: give a Curve.", "curve", curve)

@@ -74,11 +74,8 @@ def _span(knots: Sequence[float] | Array, degree: int, t: float) -> int:
 def knot_vector(knots: Any, count: int, name: str, points: str) -> KnotVector:
     """A knot vector for `count` control points; the degree follows from the two counts.
 
-    Raises
-    ------
-    ValueError
-        Unsorted, not finite, counts that disagree, a degree outside 1 .. 9, too many equal knots,
-        or an empty domain. `name` and `points` name the arguments.
+    Raises ValueError: unsorted, not finite, counts that disagree, a degree outside 1 .. 9, too many
+    equal knots, or an empty domain. `name` and `points` name the arguments.
     """
     t = finite(knots, name, (-1,))
     degree = len(t) - count - 1
@@ -163,10 +160,8 @@ def bezier_spans(vector: KnotVector) -> list[tuple[int, Array]]:
 def refine(vector: KnotVector, new: Sequence[float], name: str) -> tuple[KnotVector, Array]:
     """Insert knots inside the domain: the new vector and the matrix (n', n) of coefficients.
 
-    Raises
-    ------
-    ValueError
-        A knot outside the open domain, or one that would then occur more than p times.
+    Raises ValueError: a knot outside the open domain, or one that would then occur more than p
+    times.
     """
     extra = finite(list(new), name, (-1,))
     first, last = vector.domain

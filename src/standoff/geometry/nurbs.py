@@ -61,6 +61,9 @@ class Span:
 class NurbsSurface(Surface):
     """A rational B-spline surface of degrees 1 to 9 with positive weights, clamped or not.
 
+    Raises ValueError: a NaN, a wrong shape, unsorted or too many equal knots, counts that disagree,
+    a degree outside 1 .. 9, a weight that is not positive, or control points without extent.
+
     Parameters
     ----------
     control_points : (n, m, 3) array, length, body frame; n along u, m along v.
@@ -68,12 +71,6 @@ class NurbsSurface(Surface):
         from the counts. The domain runs from knot p to knot n (q to m); inside it a knot may
         occur at most p (q) times.
     weights : (n, m) positive array; ones by default.
-
-    Raises
-    ------
-    ValueError
-        A NaN, a wrong shape, unsorted or too many equal knots, counts that disagree, a degree
-        outside 1 .. 9, a weight that is not positive, or control points without extent.
 
     Notes
     -----
@@ -176,10 +173,7 @@ class NurbsSurface(Surface):
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
         """The same surface on a smaller domain; parameters stay the same.
 
-        Raises
-        ------
-        ValueError
-            The domain is empty or leaves the present one.
+        Raises ValueError: the domain is empty or leaves the present one.
         """
         smaller = self.smaller_domain(u0, u1, v0, v1)
         surface = object.__new__(type(self))
@@ -253,10 +247,7 @@ class NurbsSurface(Surface):
     def elevated(self, degree_u: int, degree_v: int) -> NurbsSurface:
         """The same surface with clamped ends and higher degrees, at most 9.
 
-        Raises
-        ------
-        ValueError
-            A degree below the present one or above 9.
+        Raises ValueError: a degree below the present one or above 9.
         """
         p, q = self.degrees
         vector_u, rows = elevate_knots(self.vector_u, degree_u - p)
@@ -293,15 +284,12 @@ class NurbsSurface(Surface):
 class BezierPatch(NurbsSurface):
     """A rational Bezier patch on u, v in [0, 1], of degrees 1 to 9 with positive weights.
 
+    Raises ValueError as for `NurbsSurface`.
+
     Parameters
     ----------
     control_points : (p + 1, q + 1, 3) array, length, body frame.
     weights : (p + 1, q + 1) positive array; ones by default.
-
-    Raises
-    ------
-    ValueError
-        As for `NurbsSurface`.
     """
 
     def __init__(self, control_points: Any, weights: Any = None) -> None:

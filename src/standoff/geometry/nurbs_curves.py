@@ -26,17 +26,14 @@ if TYPE_CHECKING:
 class NurbsCurve(Curve):
     """A rational B-spline curve of degree 1 to 9 with positive weights, clamped or not.
 
+    Raises ValueError as for `NurbsSurface`.
+
     Parameters
     ----------
     control_points : (n, 3) array, or (n, 2) in the plane z = 0; length, body frame.
     knots : (n + p + 1,) array, ascending; the degree p follows from the counts. The curve runs
         from knot p to knot n; inside, a knot may occur at most p times.
     weights : (n,) positive array; ones by default.
-
-    Raises
-    ------
-    ValueError
-        As for `NurbsSurface`.
 
     Notes
     -----

@@ -65,16 +65,13 @@ class BezierPcurve(Pcurve):
 class NurbsPcurve(Pcurve):
     """A NURBS curve in (u, v) with its edge's parameter.
 
+    Raises ValueError as for `NurbsSurface`.
+
     Parameters
     ----------
     control_points : (n, 2) array, surface parameters
     knots : (n + degree + 1,) array, edge parameter; clamped or not, uniform or not
     weights : (n,) array, positive; ones by default
-
-    Raises
-    ------
-    ValueError
-        As for `NurbsSurface`.
     """
 
     spans: list[BezierPcurve]

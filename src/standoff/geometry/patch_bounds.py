@@ -190,10 +190,7 @@ def area_of(tangents: tuple[Interval, Interval]) -> tuple[Interval, Interval]:
 def checked_rectangles(rectangles: Any) -> Boxes:
     """(n, 4) rows (u0, u1, v0, v1) as boxes; one row is one box.
 
-    Raises
-    ------
-    StandoffError
-        A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
+    Raises StandoffError: a wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
     """
     rows = finite(np.atleast_2d(rectangles), "rectangles", (-1, 4))
     wrong = np.flatnonzero((rows[:, 0] > rows[:, 1]) | (rows[:, 2] > rows[:, 3]))

@@ -19,6 +19,8 @@ from standoff.read_only import KeepsReadOnly
 class Pcurve(KeepsReadOnly):
     """A trimming curve: homogeneous (u, v) as an affine image of a line or a unit circle.
 
+    Raises ValueError: another kind, a wrong shape, or a number that is not finite.
+
     Parameters
     ----------
     kind : int
@@ -26,11 +28,6 @@ class Pcurve(KeepsReadOnly):
         others use `NurbsPcurve`.
     matrix : (3, 3) array_like
         P in P (t, 0, 1) for a line, or in P (cos t, sin t, 1) for a conic, t in radians.
-
-    Raises
-    ------
-    ValueError
-        Another kind, a wrong shape, or a number that is not finite.
     """
 
     kind: int

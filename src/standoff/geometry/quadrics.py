@@ -36,6 +36,8 @@ _AXES = np.array(
 class Plane(Surface):
     """(u, v, 0): the plane through `shift` spanned by the first two columns of `linear`.
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -45,11 +47,6 @@ class Plane(Surface):
         The point of u = v = 0, length.
     domain : (u0, u1, v0, v1)
         Ranges of the parameters, dimensionless; the whole surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     kind = L.PLANE
@@ -68,6 +65,8 @@ class Plane(Surface):
     def through(origin: Array, along_u: Array, along_v: Array) -> Plane:
         """The plane x = origin + u along_u + v along_v.
 
+        Raises ValueError: a wrong shape, a number that is not finite, parallel directions.
+
         Parameters
         ----------
         origin, along_u, along_v : (3,) array_like
@@ -76,11 +75,6 @@ class Plane(Surface):
         Returns
         -------
         Plane
-
-        Raises
-        ------
-        ValueError
-            A wrong shape, a number that is not finite, parallel directions.
         """
         along_u, along_v = vector3(along_u, "along_u"), vector3(along_v, "along_v")
         normal = np.cross(along_u, along_v)
@@ -105,6 +99,8 @@ class Sphere(Surface):
 
     Every plane section is a conic in (u, v).
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -115,11 +111,6 @@ class Sphere(Surface):
     domain : (u0, u1, v0, v1)
         Ranges of the parameters, tangents of angles from the centre of the chart; the whole chart
         by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     kind = L.SPHERE
@@ -178,6 +169,8 @@ class Sphere(Surface):
 class Cylinder(Rotational):
     """(cos u, sin u, v); u needs no seam.
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -187,11 +180,6 @@ class Cylinder(Rotational):
         The point of the axis at v = 0, length.
     domain : (u0, u1, v0, v1)
         Ranges of the parameters: u in radians; all of the surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     kind = L.CYLINDER
@@ -229,6 +217,8 @@ class Cylinder(Rotational):
 class Cone(Rotational):
     """(v cos u, v sin u, v), v >= 0: the apex is at `shift`.
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -238,11 +228,6 @@ class Cone(Rotational):
         The apex, length.
     domain : (u0, u1, v0, v1)
         Ranges of the parameters: u in radians; all of the surface by default.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     kind = L.CONE
@@ -281,6 +266,8 @@ class Cone(Rotational):
 def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
     """Six overlapping gnomonic charts of the ellipsoid linear @ (unit sphere) + centre.
 
+    Raises ValueError: a wrong shape, a number that is not finite, or a singular map.
+
     Parameters
     ----------
     linear : (3, 3) array_like
@@ -292,11 +279,6 @@ def sphere_atlas(linear: Array, centre: Array) -> tuple[Sphere, ...]:
     -------
     tuple of six Sphere
         The charts of one `Face`.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, or a singular map.
     """
     axes = matrix3(linear, "linear")
     return tuple(Sphere(axes @ turn, centre) for turn in _AXES)

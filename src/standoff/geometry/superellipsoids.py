@@ -42,6 +42,9 @@ def checked_exponent(value: object, name: str) -> float:
 class SuperellipsoidPole(Surface):
     """Gnomonic chart (u, v, 1) F(u, v)^(-e1/2) of a superellipsoid, about its axis.
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain,
+    an exponent out of range.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -52,12 +55,6 @@ class SuperellipsoidPole(Surface):
         Ranges of the parameters, dimensionless; all of the chart by default.
     e1, e2 : float
         Exponents along and about the axis, dimensionless, 0.1 to 1.8.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain, an exponent
-        out of range.
     """
 
     e1: float = 1.0
@@ -120,6 +117,9 @@ class SuperellipsoidPole(Surface):
 class SuperellipsoidSide(SuperellipsoidPole):
     """The same about a point of the equator, with u along the equator and v along the axis.
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain,
+    an exponent out of range.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -130,12 +130,6 @@ class SuperellipsoidSide(SuperellipsoidPole):
         Ranges of the parameters, dimensionless; all of the chart by default.
     e1, e2 : float
         Exponents along and about the axis, dimensionless, 0.1 to 1.8.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain, an exponent
-        out of range.
     """
 
     kind = L.SUPERELLIPSOID_SIDE

@@ -27,6 +27,9 @@ class SurfaceCurve(Curve):
     Its packed edge has no data: kernels evaluate the pcurve on the chart of the edge's first
     coedge, so one of the edge's two faces must have this surface as a chart.
 
+    Raises ValueError: something other than a surface or a pcurve, a number that is not finite, an
+    empty range.
+
     Parameters
     ----------
     surface : Surface
@@ -38,11 +41,6 @@ class SurfaceCurve(Curve):
     others : sequence of pairs (Surface, Pcurve)
         The same curve in other charts. A point is evaluated in the chart in which it is most
         central.
-
-    Raises
-    ------
-    ValueError
-        Something other than a surface or a pcurve, a number that is not finite, an empty range.
     """
 
     kind = L.ON_SURFACE
@@ -78,6 +76,9 @@ class SurfaceCurve(Curve):
     def isoline(surface: Surface, *, u: Any = None, v: Any = None) -> SurfaceCurve:
         """The curve u = const (v its parameter) or v = const over the surface's domain.
 
+        Raises ValueError: not a surface, both parameters or neither, a number that is not finite,
+        an infinite domain.
+
         Parameters
         ----------
         surface : Surface
@@ -88,12 +89,6 @@ class SurfaceCurve(Curve):
         Returns
         -------
         SurfaceCurve
-
-        Raises
-        ------
-        ValueError
-            Not a surface, both parameters or neither, a number that is not finite, an infinite
-            domain.
         """
         if not isinstance(surface, Surface):
             raise StandoffError(f"surface is {shown(surface)}: give a Surface.", "surface", surface)

@@ -42,6 +42,8 @@ class Surface(KeepsReadOnly, ABC):
     Everything about a kind of surface is in its class: in the attributes below, which every class
     sets, and in its methods. Other modules do not test for the class itself.
 
+    Raises ValueError: a wrong shape, a number that is not finite, a singular map, an empty domain.
+
     Parameters
     ----------
     linear : (3, 3) array_like, regular
@@ -50,11 +52,6 @@ class Surface(KeepsReadOnly, ABC):
         Length.
     domain : (u0, u1, v0, v1)
         Ranges of the parameters; a *patch* is a surface whose domain is finite.
-
-    Raises
-    ------
-    ValueError
-        A wrong shape, a number that is not finite, a singular map, an empty domain.
     """
 
     linear: Array
@@ -143,10 +140,7 @@ class Surface(KeepsReadOnly, ABC):
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> Self:
         """The same surface on a smaller domain; parameters stay the same.
 
-        Raises
-        ------
-        ValueError
-            The domain is empty or leaves the present one.
+        Raises ValueError: the domain is empty or leaves the present one.
         """
         return replace(self, domain=self.smaller_domain(u0, u1, v0, v1))
 
@@ -224,6 +218,8 @@ class Surface(KeepsReadOnly, ABC):
     def extents(self, rectangles: Any, directions: Any) -> tuple[Array, Array]:
         """How far the surface extends along directions, over rectangles of parameters.
 
+        Raises StandoffError: a wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
+
         Parameters
         ----------
         rectangles : (n, 4) array_like
@@ -235,11 +231,6 @@ class Surface(KeepsReadOnly, ABC):
         -------
         low, high : (m, n) arrays
             Bounds of direction . x, in the unit of the product.
-
-        Raises
-        ------
-        StandoffError
-            A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
         """
         from standoff.geometry.patch_bounds import checked_rectangles, cut
 
@@ -263,6 +254,8 @@ class Surface(KeepsReadOnly, ABC):
         width, cones and curvatures with the width. Next to a crease they are those of the
         rectangle's own side.
 
+        Raises StandoffError: a wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
+
         Parameters
         ----------
         rectangles : (n, 4) array_like
@@ -271,11 +264,6 @@ class Surface(KeepsReadOnly, ABC):
         Returns
         -------
         PatchBounds
-
-        Raises
-        ------
-        StandoffError
-            A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
         """
         from standoff.geometry.patch_bounds import checked_rectangles, cut
 
@@ -286,6 +274,8 @@ class Surface(KeepsReadOnly, ABC):
 
     def normal_cones(self, rectangles: Any) -> tuple[Array, Array]:
         """The cones of `bounds` alone, for less than half of its time.
+
+        Raises StandoffError: a wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
 
         Parameters
         ----------
@@ -298,11 +288,6 @@ class Surface(KeepsReadOnly, ABC):
             Around the normals x_u × x_v, unit vectors, body frame.
         angle : (n,) array
             Half angles, radians, below pi/2; pi if no cone is known.
-
-        Raises
-        ------
-        StandoffError
-            A wrong shape, a number that is not finite, u0 > u1 or v0 > v1.
         """
         from standoff.geometry.patch_bounds import checked_rectangles, cut, merged_cones
 

@@ -78,16 +78,14 @@ class Swept(Surface):
 class Revolution(Swept, Rotational):
     """(r(v) cos u, r(v) sin u, z(v)): a profile (r, 0, z) rotated about the axis z.
 
+    Raises ValueError: the profile leaves the plane y = 0, or meets the axis between its ends; more
+    than a turn.
+
     Parameters
     ----------
     profile : Curve in the half-plane y = 0, x >= 0: x is the radius, z the height, lengths.
         It may touch the axis only at its ends: poles, where a side is collapsed.
     first, last : angles, radians; a full turn, the default, is periodic in u.
-
-    Raises
-    ------
-    ValueError
-        The profile leaves the plane y = 0, or meets the axis between its ends; more than a turn.
 
     Notes
     -----
@@ -196,16 +194,13 @@ class Revolution(Swept, Rotational):
 class Extrusion(Swept):
     """c(u) + v d: a profile moved along a direction.
 
+    Raises ValueError: a zero direction, one along the profile, or an empty range.
+
     Parameters
     ----------
     profile : Curve.
     direction : (3,) array, not zero, length: the displacement at v = 1.
     first, last : range of v (dimensionless).
-
-    Raises
-    ------
-    ValueError
-        A zero direction, one along the profile, or an empty range.
 
     Notes
     -----

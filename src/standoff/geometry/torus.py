@@ -48,17 +48,15 @@ def _inmost(v0: float, v1: float) -> float:
 class Torus(Rotational):
     """((R + r cos v) cos u, (R + r cos v) sin u, r sin v): its outer half, |v| <= pi/2, is convex.
 
+    Raises ValueError: a radius that is not positive, more than a turn, or a range of v that meets
+    the axis.
+
     Parameters
     ----------
     major, minor : R > 0 and r > 0, length: distance of the circle's centre from the axis z, and
         radius of the circle.
     u0, u1 : angles about the axis, radians; a full turn, the default, is periodic.
     v0, v1 : angles of the circle, radians, at most a turn apart; its convex part by default.
-
-    Raises
-    ------
-    ValueError
-        A radius that is not positive, more than a turn, or a range of v that meets the axis.
     """
 
     kind = L.TORUS

@@ -46,6 +46,8 @@ def distances(a: Body, b: Body, poses_a: PosesLike, poses_b: PosesLike) -> Dista
     same; numbers differ by roundings. Rows that a thread does not prove, as those of bodies that
     touch and of witness points on edges, are answered by the processor.
 
+    Raises TypeError, ValueError as ``so.distances``; bodies with other faces; no GPU.
+
     Parameters
     ----------
     a, b : Body
@@ -63,11 +65,6 @@ def distances(a: Body, b: Body, poses_a: PosesLike, poses_b: PosesLike) -> Dista
     -----
     RefusedRowsWarning
         As ``so.distances``.
-
-    Raises
-    ------
-    TypeError, ValueError
-        As ``so.distances``; bodies with other faces; no GPU.
     """
     check_pair(a, b)
     answering = Answering(kernel_of(a, b))
@@ -81,10 +78,7 @@ def distances(a: Body, b: Body, poses_a: PosesLike, poses_b: PosesLike) -> Dista
 def kernel_of(a: Body, b: Body) -> str:
     """The name of the kernel that answers cold rows of two bodies.
 
-    Raises
-    ------
-    ValueError
-        There is none.
+    Raises ValueError: there is none.
     """
     if whole_ellipsoid(a.ints) and whole_ellipsoid(b.ints):
         return ELLIPSOIDS

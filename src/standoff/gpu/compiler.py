@@ -98,10 +98,7 @@ def launched(function: Callable[..., None]) -> Any:
 def check_there() -> None:
     """Raise if there is no GPU that can be used.
 
-    Raises
-    ------
-    StandoffError
-        There is none, or no driver for it.
+    Raises StandoffError: there is none, or no driver for it.
     """
     if not cuda.is_available():
         raise StandoffError(

@@ -66,6 +66,8 @@ class Resources(NamedTuple):
 def resources_of(kernel: str, target: Target = (9, 0)) -> Resources:
     """Compile a kernel for a GPU that need not be there, and read what it takes.
 
+    Raises ValueError: no such kernel, or a target that the compiler does not know.
+
     Parameters
     ----------
     kernel : str
@@ -76,11 +78,6 @@ def resources_of(kernel: str, target: Target = (9, 0)) -> Resources:
     Returns
     -------
     Resources
-
-    Raises
-    ------
-    ValueError
-        No such kernel, or a target that the compiler does not know.
     """
     ptx, seconds = compiled(kernel, target)
     begun = time.perf_counter()
@@ -100,10 +97,7 @@ def resources_of(kernel: str, target: Target = (9, 0)) -> Resources:
 def compiled(kernel: str, target: Target) -> tuple[str, float]:
     """(the PTX of a kernel, seconds that it took).
 
-    Raises
-    ------
-    ValueError
-        No such kernel, or a target that the compiler does not know.
+    Raises ValueError: no such kernel, or a target that the compiler does not know.
     """
     if kernel not in KERNELS:
         raise StandoffError(
@@ -122,10 +116,7 @@ def _most(said: str, told: str) -> int:
 def assembler() -> str:
     """Where ptxas is.
 
-    Raises
-    ------
-    ModuleNotFoundError
-        It is neither installed with the extra nor on the path.
+    Raises ModuleNotFoundError: it is neither installed with the extra nor on the path.
     """
     found = find_spec("nvidia.cuda_nvcc")
     for folder in (found.submodule_search_locations or ()) if found else ():

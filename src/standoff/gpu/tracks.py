@@ -39,6 +39,9 @@ class Tracks:
     and writes a row where it lies, and a copy of all rows for each frame would take as long on a
     GPU as the frame. `states` is a value.
 
+    Raises TypeError: something that is no state. Raises ValueError: another law or other faces; no
+    state, or one of other bodies; no GPU.
+
     Parameters
     ----------
     tracker : Tracker
@@ -51,13 +54,6 @@ class Tracks:
     ----------
     by_threads : int
         Number of the last step's frames that were made on the GPU.
-
-    Raises
-    ------
-    TypeError
-        Something that is no state.
-    ValueError
-        Another law or other faces; no state, or one of other bodies; no GPU.
     """
 
     def __init__(self, tracker: Tracker, states: TrackerStates | Sequence[TrackerState]) -> None:
@@ -101,6 +97,9 @@ class Tracks:
     ) -> Array:
         """The next frame of every row.
 
+        Raises ValueError: poses or twists of another number or that are invalid; nothing has
+        changed then.
+
         Parameters
         ----------
         poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), and others, or one pose for all
@@ -114,11 +113,6 @@ class Tracks:
         -------
         (n, 40) array
             The rows' answers, by ``standoff.kernels.state.arrays``.
-
-        Raises
-        ------
-        ValueError
-            Poses or twists of another number or that are invalid; nothing has changed then.
         """
         h = self.tracker.dt if dt is None else positive(dt, "dt")
         n = self._blocks.shape[0]
@@ -192,10 +186,7 @@ def given_rows(
 ) -> Array:
     """(n, N_GIVEN) what a frame is given: both motions, h [s], 1 where there are twists.
 
-    Raises
-    ------
-    ValueError
-        Poses or twists of another number, or that are invalid.
+    Raises ValueError: poses or twists of another number, or that are invalid.
     """
     given = np.zeros((n, N_GIVEN))
     given[:, K.POSE_A : K.POSE_B] = _sound_poses(poses[0], "poses_a", n)
@@ -210,10 +201,7 @@ def given_rows(
 def kernel_of(tracker: Tracker) -> str:
     """The name of the kernel that makes a tracker's frames.
 
-    Raises
-    ------
-    ValueError
-        There is none.
+    Raises ValueError: there is none.
     """
     law = tracker.law
     if not isinstance(law, PredictorCorrector) or law.within is not None:

@@ -34,6 +34,11 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     Each interval of time is proven free by the certified bounds at its ends and the greatest
     accelerations within it, or of solids the greatest speeds (docs/impact-proof.md).
 
+    Raises TypeError: not a body, neither path nor pose, or a path of which no bounds are known.
+    Raises ValueError: a negative clearance, a tolerance or duration that is not positive, a budget
+    that is not a whole number of at least 2, times beyond 1e50 s, a duration that is negligible
+    compared with the start, a pair that cannot be tracked, or a time that a path refuses.
+
     Parameters
     ----------
     a, b : Body, Solid, Boundary or PlanarSolid
@@ -57,15 +62,6 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
     Returns
     -------
     Impact
-
-    Raises
-    ------
-    TypeError
-        Not a body, neither path nor pose, or a path of which no bounds are known.
-    ValueError
-        A negative clearance, a tolerance or duration that is not positive, a budget that is not a
-        whole number of at least 2, times beyond 1e50 s, a duration that is negligible compared with
-        the start, a pair that cannot be tracked, or a time that a path refuses.
     """
     paths = moving(path_a, "path_a"), moving(path_b, "path_b")
     for path in paths:

@@ -33,9 +33,7 @@ PROBES = 8
 def checked_clearance(clearance: float) -> float:
     """A distance that counts as impact, zero or more (length).
 
-    Raises
-    ------
-    TypeError, ValueError
+    Raises TypeError, ValueError.
     """
     clearance = number(clearance, "clearance")
     if clearance < 0.0:
@@ -53,10 +51,8 @@ def checked_times(paths: Iterable[Any], start: float, duration: float) -> tuple[
     """The times at which the search begins and ends [s]; a rounding beyond a path's end is not a
     time beyond it.
 
-    Raises
-    ------
-    TypeError, ValueError
-        If a path ends before, or no time is left between the start and the end.
+    Raises TypeError, ValueError if a path ends before, or no time is left between the start and the
+    end.
     """
     duration, start = positive(duration, "duration"), number(start, "start")
     end = start + duration

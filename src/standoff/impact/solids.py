@@ -126,17 +126,14 @@ def solid_search(
 ) -> SolidSearch:
     """The search for the impact of two solids, or of one and a body.
 
+    Raises TypeError, StandoffError: a pair of which no distance is known.
+
     Parameters
     ----------
     a, b : Solid, PlanarSolid, Boundary or Body
     paths : their paths, which know their bounds
     clearance : length
     options : the search's tolerance and that of its answers, relative, and its budget
-
-    Raises
-    ------
-    TypeError, StandoffError
-        A pair of which no distance is known.
     """
     tolerance, gap, budget = options
     planar = any(getattr(each, "dimension", 3) == 2 for each in (a, b))

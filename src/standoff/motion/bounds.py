@@ -79,6 +79,10 @@ class BoundedPath(Protocol):
 class Bounded(KeepsReadOnly):
     """A path of your own, with what you know of its accelerations.
 
+    Raises TypeError if the path has no ``pose`` and ``twist``, and is not a function. Raises
+    ValueError if a bound is negative or not finite, or the breaks are not a sequence of finite
+    numbers.
+
     Parameters
     ----------
     path
@@ -98,13 +102,6 @@ class Bounded(KeepsReadOnly):
         No less than the sum of the lengths that your ``pose`` turns or adds up [length], see
         `MotionBounds`. Without it, the sum is taken to be no greater than the distance of the
         body's origin from the world's: give it if long arms or offsets cancel.
-
-    Raises
-    ------
-    TypeError
-        If the path has no ``pose`` and ``twist``, and is not a function.
-    ValueError
-        If a bound is negative or not finite, or the breaks are not a sequence of finite numbers.
     """
 
     def __init__(
@@ -200,10 +197,7 @@ def turning(
 def bounds_of(path: object, first: float, last: float, point: FloatArray) -> MotionBounds:
     """Return a path's bounds between two times [s] for a point fixed in its body.
 
-    Raises
-    ------
-    TypeError
-        If the path knows no bounds.
+    Raises TypeError if the path knows no bounds.
     """
     return known(path).bounds(first, last, point)
 
@@ -211,10 +205,7 @@ def bounds_of(path: object, first: float, last: float, point: FloatArray) -> Mot
 def breaks_of(path: object, first: float, last: float) -> Sequence[float]:
     """Return the times strictly between two [s] at which a path's twist jumps.
 
-    Raises
-    ------
-    TypeError
-        If the path knows no bounds.
+    Raises TypeError if the path knows no bounds.
     """
     return known(path).breaks(first, last)
 
@@ -222,10 +213,7 @@ def breaks_of(path: object, first: float, last: float) -> Sequence[float]:
 def known(path: object) -> BoundedPath:
     """Return the path, if it knows its bounds.
 
-    Raises
-    ------
-    TypeError
-        If it does not.
+    Raises TypeError if it does not.
     """
     if not callable(getattr(path, "bounds", None)) or not callable(getattr(path, "breaks", None)):
         raise StandoffTypeError(

@@ -33,10 +33,7 @@ MotionLike: TypeAlias = Moving | Callable[[float], PoseLike] | PoseLike
 def moving(given: Any, name: str, start: float = 0.0, end: float = math.inf) -> Moving:
     """Return a path; a function is one from `start` to `end`, a pose is one at rest.
 
-    Raises
-    ------
-    TypeError
-        If it is none of these.
+    Raises TypeError if it is none of these.
     """
     try:
         path: Moving = path_of(given, start, end)

@@ -58,14 +58,11 @@ class Path(Protocol):
 class Fixed(KeepsReadOnly):
     """A body at rest, for all times.
 
+    Raises ValueError if that is not a pose.
+
     Parameters
     ----------
     pose : Pose or what `Pose.of` reads
-
-    Raises
-    ------
-    ValueError
-        If that is not a pose.
     """
 
     start = 0.0
@@ -101,16 +98,13 @@ class ConstantTwist(KeepsReadOnly):
     With a body-frame twist the motion is a screw, ``pose @ exp(twist · t)``. With a world-frame
     twist the origin moves straight on while the body turns about it.
 
+    Raises ValueError if that is not a pose or a twist.
+
     Parameters
     ----------
     pose : Pose or what `Pose.of` reads
         Where the body is at t = 0.
     twist : Twist or what `Twist.of` reads
-
-    Raises
-    ------
-    ValueError
-        If that is not a pose or a twist.
     """
 
     start = 0.0
@@ -149,6 +143,9 @@ class ConstantTwist(KeepsReadOnly):
 class Screw(KeepsReadOnly):
     """A body that turns about a fixed axis in the world and advances along it.
 
+    Raises ValueError if that is not a pose, the axis is zero, a number is not finite, or a shape is
+    wrong.
+
     Parameters
     ----------
     pose : Pose or what `Pose.of` reads
@@ -161,11 +158,6 @@ class Screw(KeepsReadOnly):
         Turn about the axis, right-handed [rad/s].
     pitch : float
         Advance along the axis in one whole turn [length].
-
-    Raises
-    ------
-    ValueError
-        If that is not a pose, the axis is zero, a number is not finite, or a shape is wrong.
     """
 
     start = 0.0
@@ -215,19 +207,15 @@ class Screw(KeepsReadOnly):
 class Offset(KeepsReadOnly):
     """A body fixed to another that follows a path.
 
+    Raises TypeError if the path has no ``pose`` and ``twist``, and is not a function. Raises
+    ValueError if that is not a pose.
+
     Parameters
     ----------
     path : Path or function of the time
         Of the body that carries.
     pose : Pose or what `Pose.of` reads
         Of the carried body in the axes of the carrying one.
-
-    Raises
-    ------
-    TypeError
-        If the path has no ``pose`` and ``twist``, and is not a function.
-    ValueError
-        If that is not a pose.
     """
 
     def __init__(self, path: Path | Callable[[float], PoseLike], pose: PoseLike) -> None:
@@ -270,17 +258,14 @@ class Offset(KeepsReadOnly):
 class Carried(KeepsReadOnly):
     """A body that follows its own path in the axes of a body that follows another path.
 
+    Raises TypeError if a path has no ``pose`` and ``twist``, and is not a function.
+
     Parameters
     ----------
     carrier : Path or function of the time
         Of the body that carries, in the world.
     within : Path or function of the time
         Of the carried body in the axes of the carrying one.
-
-    Raises
-    ------
-    TypeError
-        If a path has no ``pose`` and ``twist``, and is not a function.
     """
 
     def __init__(

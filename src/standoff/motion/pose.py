@@ -28,6 +28,9 @@ class Pose(KeepsReadOnly):
 
     A point with coordinates x in the body is at ``rotation @ x + translation`` in the world.
 
+    Raises ValueError if a component is not finite, a shape is wrong, or the matrix is not a
+    rotation (``RᵀR`` is the identity to 1e-5, with determinant +1).
+
     Parameters
     ----------
     rotation : array_like, shape (3, 3), or SciPy's ``Rotation``
@@ -47,12 +50,6 @@ class Pose(KeepsReadOnly):
         True if the rotation given was not one to 1e-9 and the nearest was taken: a rounded matrix,
         a normalised quaternion, or a matrix given to `nearest`. Poses computed from this one do not
         carry the mark.
-
-    Raises
-    ------
-    ValueError
-        If a component is not finite, a shape is wrong, or the matrix is not a rotation
-        (``RᵀR`` is the identity to 1e-5, with determinant +1).
     """
 
     rotation: FloatArray
@@ -91,18 +88,15 @@ class Pose(KeepsReadOnly):
     def of(cls, value: PoseLike) -> Pose:
         """Read a pose.
 
+        Raises ValueError if it is none of these; a four-vector is refused, since the order of a
+        quaternion cannot be known.
+
         Parameters
         ----------
         value : Pose, array_like of shape (4, 4), pair (R, p), or SciPy's ``RigidTransform``
             A homogeneous matrix, or a rotation with a translation. In a pair, R is a matrix or
             SciPy's ``Rotation``. Any object whose ``as_matrix()`` returns such a matrix will do,
             such as those of jaxlie and mink. Rounded rotations are repaired as by ``Pose(R, p)``.
-
-        Raises
-        ------
-        ValueError
-            If it is none of these; a four-vector is refused, since the order of a quaternion cannot
-            be known.
         """
         return value if isinstance(value, Pose) else cls(*_parts(value))
 
@@ -114,6 +108,9 @@ class Pose(KeepsReadOnly):
         digits, in half precision, or accumulated from small turns. A scale or a shear is lost:
         those of a body belong to ``Body.transformed``.
 
+        Raises ValueError if a component is not finite, a shape is wrong, or R is mirrored or flat
+        (zero, or with one principal stretch below 1e-6 of another).
+
         Parameters
         ----------
         value : Pose or what `of` reads
@@ -124,12 +121,6 @@ class Pose(KeepsReadOnly):
         -------
         Pose
             With `repaired` set, unless R was orthonormal to 1e-9: then R is kept bit for bit.
-
-        Raises
-        ------
-        ValueError
-            If a component is not finite, a shape is wrong, or R is mirrored or flat (zero, or with
-            one principal stretch below 1e-6 of another).
         """
         if isinstance(value, Pose):
             return value
@@ -146,17 +137,15 @@ class Pose(KeepsReadOnly):
     def from_wxyz(cls, quaternion: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
         """Make a pose from a quaternion with the scalar first.
 
+        Raises ValueError if a component is not finite, a shape is wrong, or the norm is off by more
+        than 1e-3.
+
         Parameters
         ----------
         quaternion : array_like, shape (4,)
             (w, x, y, z), of unit norm to 1e-3; normalised, and marked by `repaired`.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
-
-        Raises
-        ------
-        ValueError
-            If a component is not finite, a shape is wrong, or the norm is off by more than 1e-3.
         """
         w, x, y, z = finite(quaternion, "quaternion (w, x, y, z)", (4,))
         return cls._from_quaternion(np.array([x, y, z, w]), translation)
@@ -165,17 +154,15 @@ class Pose(KeepsReadOnly):
     def from_xyzw(cls, quaternion: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
         """Make a pose from a quaternion with the scalar last; otherwise as `from_wxyz`.
 
+        Raises ValueError if a component is not finite, a shape is wrong, or the norm is off by more
+        than 1e-3.
+
         Parameters
         ----------
         quaternion : array_like, shape (4,)
             (x, y, z, w), of unit norm to 1e-3; normalised, and marked by `repaired`.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
-
-        Raises
-        ------
-        ValueError
-            If a component is not finite, a shape is wrong, or the norm is off by more than 1e-3.
         """
         xyzw = finite(quaternion, "quaternion (x, y, z, w)", (4,))
         return cls._from_quaternion(xyzw, translation)
@@ -201,17 +188,14 @@ class Pose(KeepsReadOnly):
     def exp(cls, rotation_vector: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
         """Make a pose from a rotation vector.
 
+        Raises ValueError if a component is not finite or a shape is wrong.
+
         Parameters
         ----------
         rotation_vector : array_like, shape (3,)
             Axis times angle [rad]. Only the rotation is the exponential.
         translation : array_like, shape (3,)
             The body's origin in world coordinates [length].
-
-        Raises
-        ------
-        ValueError
-            If a component is not finite or a shape is wrong.
         """
         vector = finite(rotation_vector, "rotation_vector", (3,))
         return cls.from_checked(
@@ -247,6 +231,8 @@ class Pose(KeepsReadOnly):
     def apply(self, points: ArrayLike) -> FloatArray:
         """Map points of the body to the world.
 
+        Raises ValueError if the last axis does not have three components.
+
         Parameters
         ----------
         points : array_like, shape (..., 3)
@@ -256,11 +242,6 @@ class Pose(KeepsReadOnly):
         -------
         ndarray, shape (..., 3)
             World coordinates [length].
-
-        Raises
-        ------
-        ValueError
-            If the last axis does not have three components.
         """
         array = numbers(points, "points", None)
         if array.ndim == 0 or array.shape[-1] != 3:

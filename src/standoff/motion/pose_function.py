@@ -29,6 +29,9 @@ NODES = 5
 class PoseFunction(KeepsReadOnly):
     """A body whose pose is a function of time.
 
+    Raises TypeError if `pose` or `twist` cannot be called. Raises ValueError if the step is not
+    positive, or the end not after the start.
+
     Parameters
     ----------
     pose : callable
@@ -47,13 +50,6 @@ class PoseFunction(KeepsReadOnly):
     start, end : float
         The times [s] between which the motion is to be used. `pose` also answers outside them, but
         no difference within them uses times beyond them.
-
-    Raises
-    ------
-    TypeError
-        If `pose` or `twist` cannot be called.
-    ValueError
-        If the step is not positive, or the end not after the start.
     """
 
     def __init__(
@@ -86,10 +82,7 @@ class PoseFunction(KeepsReadOnly):
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s].
 
-        Raises
-        ------
-        ValueError
-            If the function does not return a pose.
+        Raises ValueError if the function does not return a pose.
         """
         seconds = number(t, "t")
         given = self._pose(seconds)
@@ -103,10 +96,7 @@ class PoseFunction(KeepsReadOnly):
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes.
 
-        Raises
-        ------
-        ValueError
-            If `twist` does not return a twist, or `pose` a pose.
+        Raises ValueError if `twist` does not return a twist, or `pose` a pose.
         """
         seconds = number(t, "t")
         if self._twist is None:
@@ -156,10 +146,7 @@ class PoseFunction(KeepsReadOnly):
 def path_of(given: Any, start: float = 0.0, end: float = math.inf) -> Any:
     """Return a path: what has ``pose(t)`` and ``twist(t)`` as it is, a function as `PoseFunction`.
 
-    Raises
-    ------
-    TypeError
-        If it is neither.
+    Raises TypeError if it is neither.
     """
     known = not isinstance(given, type)  # a class is not one, only its instances
     if known and all(callable(getattr(given, name, None)) for name in ("pose", "twist")):

@@ -53,6 +53,8 @@ class Poses(KeepsReadOnly):
     ``poses[k]`` is one `Pose`, ``len(poses)`` their number. Takes about a microsecond per pose,
     where a list of `Pose` takes fifty.
 
+    Raises ValueError if a shape is wrong, or a pose is invalid; the first such is named.
+
     Parameters
     ----------
     rotations : array_like, shape (n, 3, 3), or SciPy's ``Rotation`` of n
@@ -68,11 +70,6 @@ class Poses(KeepsReadOnly):
         Read-only, float64.
     repaired : ndarray of bool, shape (n,)
         The mark `Pose.repaired` of each.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, or a pose is invalid; the first such is named.
     """
 
     rotations: FloatArray
@@ -119,17 +116,13 @@ class Poses(KeepsReadOnly):
     def of(cls, poses: Poses | Sequence[PoseLike] | NDArray[Any] | HasMatrix) -> Poses:
         """Read poses.
 
+        Raises TypeError if it is none of these. Raises ValueError if a pose is invalid; the first
+        such is named.
+
         Parameters
         ----------
         poses : Poses, sequence of poses, array (n, 4, 4), or SciPy's ``RigidTransform`` of n
             Of a sequence each is a Pose or what `Pose.of` reads.
-
-        Raises
-        ------
-        TypeError
-            If it is none of these.
-        ValueError
-            If a pose is invalid; the first such is named.
         """
         if isinstance(poses, Poses):
             return poses
@@ -172,18 +165,15 @@ class Poses(KeepsReadOnly):
     def from_wxyz(cls, quaternions: ArrayLike, translations: ArrayLike) -> Poses:
         """Make poses from quaternions with the scalar first.
 
+        Raises ValueError if a component is not finite, a shape is wrong, or a norm is off by more
+        than 1e-3; the first such pose is named.
+
         Parameters
         ----------
         quaternions : array_like, shape (n, 4)
             Rows (w, x, y, z), each of unit norm to 1e-3; normalised, and marked by `repaired`.
         translations : array_like, shape (n, 3) or (3,)
             The body's origins in world coordinates [length]; one is used for all quaternions.
-
-        Raises
-        ------
-        ValueError
-            If a component is not finite, a shape is wrong, or a norm is off by more than 1e-3; the
-            first such pose is named.
         """
         rows = _rows(quaternions, "quaternions (w, x, y, z)", (4,))
         return cls._from_quaternions(rows[:, [1, 2, 3, 0]], translations)
@@ -192,18 +182,15 @@ class Poses(KeepsReadOnly):
     def from_xyzw(cls, quaternions: ArrayLike, translations: ArrayLike) -> Poses:
         """Make poses from quaternions with the scalar last; otherwise as `from_wxyz`.
 
+        Raises ValueError if a component is not finite, a shape is wrong, or a norm is off by more
+        than 1e-3; the first such pose is named.
+
         Parameters
         ----------
         quaternions : array_like, shape (n, 4)
             Rows (x, y, z, w), each of unit norm to 1e-3; normalised, and marked by `repaired`.
         translations : array_like, shape (n, 3) or (3,)
             The body's origins in world coordinates [length]; one is used for all quaternions.
-
-        Raises
-        ------
-        ValueError
-            If a component is not finite, a shape is wrong, or a norm is off by more than 1e-3; the
-            first such pose is named.
         """
         rows = _rows(quaternions, "quaternions (x, y, z, w)", (4,))
         return cls._from_quaternions(rows, translations)

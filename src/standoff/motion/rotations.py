@@ -81,10 +81,7 @@ def as_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
 
     One that is orthonormal to `ORTHONORMALITY` is returned as it is.
 
-    Raises
-    ------
-    ValueError
-        If it is off by more than `ROUNDED`, or mirrored.
+    Raises ValueError if it is off by more than `ROUNDED`, or mirrored.
     """
     off = float(defect(matrix))
     if off > ROUNDED:
@@ -109,10 +106,7 @@ def as_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
 def nearest_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
     """Return the rotation nearest to any one matrix, in the sum of squares, and whether it differs.
 
-    Raises
-    ------
-    ValueError
-        If the matrix is flat or mirrored.
+    Raises ValueError if the matrix is flat or mirrored.
     """
     if defect(matrix) <= ORTHONORMALITY:
         return as_rotation(matrix)

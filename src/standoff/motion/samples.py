@@ -32,6 +32,11 @@ class PoseSamples(KeepsReadOnly):
     0 to 1, so that the twist is constant in the body's axes. It jumps at a sample: there `twist`
     returns that of the interval that begins, and at the end that of the last interval.
 
+    Raises TypeError if the poses are neither a sequence nor an array. Raises ValueError if there
+    are fewer than two samples, as many times as poses are not given, times do not increase strictly
+    or are not finite, a pose is invalid (the first such is named), or two samples differ by a half
+    turn, which has two shortest screws.
+
     Parameters
     ----------
     times : array_like, shape (n,)
@@ -47,15 +52,6 @@ class PoseSamples(KeepsReadOnly):
     repaired : int
         How many poses had a rounded rotation, and were replaced by the nearest one: their
         `Pose.repaired`.
-
-    Raises
-    ------
-    TypeError
-        If the poses are neither a sequence nor an array.
-    ValueError
-        If there are fewer than two samples, as many times as poses are not given, times do not
-        increase strictly or are not finite, a pose is invalid (the first such is named), or two
-        samples differ by a half turn, which has two shortest screws.
     """
 
     def __init__(
@@ -157,10 +153,7 @@ class PoseSamples(KeepsReadOnly):
     def pose(self, t: float) -> Pose:
         """Return where the body is at time `t` [s].
 
-        Raises
-        ------
-        ValueError
-            If `t` is outside the samples.
+        Raises ValueError if `t` is outside the samples.
         """
         index, seconds = self._interval(t)
         if seconds == self.end:
@@ -172,10 +165,7 @@ class PoseSamples(KeepsReadOnly):
     def twist(self, t: float) -> Twist:
         """Return how the body moves at time `t` [s], in world axes.
 
-        Raises
-        ------
-        ValueError
-            If `t` is outside the samples.
+        Raises ValueError if `t` is outside the samples.
         """
         index, seconds = self._interval(t)
         return self._twist(index).in_world(self.pose(seconds))
@@ -183,10 +173,7 @@ class PoseSamples(KeepsReadOnly):
     def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
         """Return bounds from time `first` to `last` [s], within one interval of the samples.
 
-        Raises
-        ------
-        ValueError
-            If a sample lies between the two, or they are outside the samples.
+        Raises ValueError if a sample lies between the two, or they are outside the samples.
         """
         index, _ = self._interval(first)
         if not first <= last <= float(self.times[index + 1]):

@@ -29,13 +29,9 @@ def parquet_rows(path: Path) -> Iterator[tuple[int, list[float]]]:
 
     Time is in seconds, or has one of Arrow's types of instants and durations, which say their unit.
 
-    Raises
-    ------
-    ValueError
-        If the file is not Parquet, a column is missing, named twice or not of numbers, or a value
-        is missing or not finite.
-    ModuleNotFoundError
-        If pyarrow is not installed.
+    Raises ValueError if the file is not Parquet, a column is missing, named twice or not of
+    numbers, or a value is missing or not finite. Raises ModuleNotFoundError if pyarrow is not
+    installed.
     """
     try:
         import pyarrow as pa

@@ -30,6 +30,8 @@ class Twist(KeepsReadOnly):
     Both frames hold the same two vectors, the velocity of the body's origin and the angular
     velocity, both relative to the world; `frame` says along which axes they are resolved.
 
+    Raises ValueError if a component is not finite, a shape is wrong, or the frame is unknown.
+
     Parameters
     ----------
     v : array_like, shape (3,)
@@ -44,11 +46,6 @@ class Twist(KeepsReadOnly):
     v, omega : ndarray, shape (3,)
         Read-only, float64.
     frame : {"world", "body"}
-
-    Raises
-    ------
-    ValueError
-        If a component is not finite, a shape is wrong, or the frame is unknown.
     """
 
     v: FloatArray
@@ -69,15 +66,12 @@ class Twist(KeepsReadOnly):
     def of(cls, value: TwistLike) -> Twist:
         """Read a twist; bare numbers are in world axes.
 
+        Raises ValueError if it is none of these.
+
         Parameters
         ----------
         value : Twist, pair (v, ω), or array_like of shape (6,)
             Linear part first.
-
-        Raises
-        ------
-        ValueError
-            If it is none of these.
         """
         if isinstance(value, Twist):
             return value
@@ -108,16 +102,13 @@ class Twist(KeepsReadOnly):
 
         It is the logarithm on SE(3): the constant twist of the screw with the least turn.
 
+        Raises ValueError if the duration is not positive.
+
         Parameters
         ----------
         first, second : Pose or what `Pose.of` reads
         duration : float
             Time between them [s], above zero.
-
-        Raises
-        ------
-        ValueError
-            If the duration is not positive.
         """
         seconds = positive(duration, "duration")
         poses = Pose.of(first), Pose.of(second)

@@ -25,6 +25,9 @@ Orientation: TypeAlias = Literal["fixed", "turning"]
 class Helix(KeepsReadOnly):
     """A body whose origin winds about an axis at a constant distance.
 
+    Raises ValueError if the radius is not positive, the axis is zero, a number is not finite, a
+    shape is wrong, or the orientation is unknown.
+
     Parameters
     ----------
     radius : float
@@ -43,12 +46,6 @@ class Helix(KeepsReadOnly):
     orientation : {"fixed", "turning"}
         Fixed: the body keeps the world's axes. Turning: its x axis points away from the axis of
         the helix, its z axis along it. `Offset` with a pure rotation turns the body in either.
-
-    Raises
-    ------
-    ValueError
-        If the radius is not positive, the axis is zero, a number is not finite, a shape is wrong,
-        or the orientation is unknown.
     """
 
     start = 0.0
@@ -119,6 +116,9 @@ class Spiral(KeepsReadOnly):
     With the angle turned since t = 0, α = rate · t, the origin is at the distance
     ``radius + growth · α`` from the centre, in the direction ``phase + α``.
 
+    Raises ValueError if the radius is negative, a number is not finite, a shape is wrong, or the
+    orientation is unknown.
+
     Parameters
     ----------
     radius : float
@@ -133,12 +133,6 @@ class Spiral(KeepsReadOnly):
         Direction at t = 0, from x to y [rad].
     orientation : {"fixed", "turning"}
         Fixed: the body keeps the world's axes. Turning: its x axis points away from the centre.
-
-    Raises
-    ------
-    ValueError
-        If the radius is negative, a number is not finite, a shape is wrong, or the orientation is
-        unknown.
     """
 
     start = 0.0

@@ -51,6 +51,8 @@ known to half a sample, and the paper's law lags."""
 class PlanarMinima(PointMinima[OnCurve]):
     """Finds, follows and proves the minima of a planar body.
 
+    Raises ValueError: a law without switching; otherwise as `Tracker`.
+
     Parameters
     ----------
     body : Body
@@ -58,11 +60,6 @@ class PlanarMinima(PointMinima[OnCurve]):
         Frame time [s].
     law : PredictorCorrector or PaperLaw
         In the paper's law each minimum is kept by its feedback; else it is descended to.
-
-    Raises
-    ------
-    ValueError
-        A law without switching; otherwise as `Tracker`.
     """
 
     def __init__(self, body: Body, dt: float, law: Law) -> None:

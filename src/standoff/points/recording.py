@@ -127,6 +127,9 @@ def record_point(
 ) -> PointRecording:
     """Track a point along a path and record every frame.
 
+    Raises TypeError: not a `PointTracker`, or not a path. Raises ValueError: times that do not
+    increase, or what the tracker refuses.
+
     Parameters
     ----------
     tracker : PointTracker
@@ -145,13 +148,6 @@ def record_point(
     Returns
     -------
     PointRecording
-
-    Raises
-    ------
-    TypeError
-        Not a `PointTracker`, or not a path.
-    ValueError
-        Times that do not increase, or what the tracker refuses.
     """
     if not isinstance(tracker, PointTracker):
         raise StandoffTypeError(

@@ -48,6 +48,8 @@ class SpatialMinima(PointMinima[TrackerState]):
 
     A prediction may lead into another minimum's basin; without any, the descent stays in its own.
 
+    Raises ValueError: another law; otherwise as `Tracker`.
+
     Parameters
     ----------
     body : Body
@@ -55,11 +57,6 @@ class SpatialMinima(PointMinima[TrackerState]):
         Frame time [s].
     law : PredictorCorrector
         Of the pair, outside and for the proof inside.
-
-    Raises
-    ------
-    ValueError
-        Another law; otherwise as `Tracker`.
     """
 
     def __init__(self, body: Body, dt: float, law: Law) -> None:

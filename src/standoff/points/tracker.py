@@ -34,6 +34,9 @@ class PointTracker(KeepsReadOnly):
     The body is at home in the world; for a moving body give the point in the body's frame. With a
     planar body the point moves in z = 0.
 
+    Raises TypeError: not a body; not a law. Raises ValueError: the paper's law without switching,
+    or with a spatial body; a law with a horizon; and as `Tracker`.
+
     Parameters
     ----------
     body : Body
@@ -45,14 +48,6 @@ class PointTracker(KeepsReadOnly):
         no minimum is less, to within ``tolerance`` of a planar body's; ``"local"`` follows those
         that were found. On a planar body the paper's law keeps the parameter on each curve by its
         feedback, where the other law descends to roundoff; it cannot be used for a spatial body.
-
-    Raises
-    ------
-    TypeError
-        Not a body; not a law.
-    ValueError
-        The paper's law without switching, or with a spatial body; a law with a horizon; and as
-        `Tracker`.
 
     Notes
     -----
@@ -87,15 +82,12 @@ class PointTracker(KeepsReadOnly):
     def start(self, point: ArrayLike, velocity: ArrayLike | None = None) -> PointState:
         """Find the minima, and the least of them with its proof.
 
+        Raises ValueError: numbers that are not finite, or with a planar body out of z = 0.
+
         Parameters
         ----------
         point, velocity : array_like, shape (3,), with a planar body also (2,)
             Place [length] and velocity [length/s] in the body's frame.
-
-        Raises
-        ------
-        ValueError
-            Numbers that are not finite, or with a planar body out of z = 0.
         """
         x, v = self._read(point, velocity)
         return self._state(self.minima.begun(x, v), x, v, 0.0)
@@ -111,6 +103,9 @@ class PointTracker(KeepsReadOnly):
 
         The paper's law begins exactly there; the other descends from there.
 
+        Raises ValueError as `start`; a spatial body; parameters too few, too many or outside their
+        curves; no such feature.
+
         Parameters
         ----------
         point, velocity : array_like, shape (2,) or (3,)
@@ -119,12 +114,6 @@ class PointTracker(KeepsReadOnly):
         feature : Feature, optional
             Of the tracker outside, where the point is there: a vertex, or a curve at its parameter.
             By default the curve that is nearest at its parameter.
-
-        Raises
-        ------
-        ValueError
-            As `start`; a spatial body; parameters too few, too many or outside their curves; no
-            such feature.
         """
         x, v = self._read(point, velocity)
         if not isinstance(self.minima, PlanarMinima):
@@ -147,6 +136,9 @@ class PointTracker(KeepsReadOnly):
     ) -> tuple[PointState, PointProximity]:
         """The answer at a point, from the state of the frame before.
 
+        Raises TypeError: ``state`` is not a state. Raises ValueError as `start`; a time that is not
+        positive, or too long for the paper's law; the state of a planar body with a spatial one.
+
         Parameters
         ----------
         state : PointState
@@ -165,14 +157,6 @@ class PointTracker(KeepsReadOnly):
         Returns
         -------
         (PointState, PointProximity)
-
-        Raises
-        ------
-        TypeError
-            ``state`` is not a state.
-        ValueError
-            As `start`; a time that is not positive, or too long for the paper's law; the state of a
-            planar body with a spatial one.
         """
         if not isinstance(state, PointState):
             raise StandoffTypeError(

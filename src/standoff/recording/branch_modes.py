@@ -28,16 +28,13 @@ Meaning = Callable[[str, Feature, Feature], Transition]
 def branch_automaton(recording: RecordedFrames, listed: SolidAutomaton | None) -> SolidAutomaton:
     """Return the automaton of a recording of solids.
 
+    Raises StandoffError if it does not hold the local minima.
+
     Parameters
     ----------
     recording : RecordedFrames
     listed : SolidAutomaton, optional
         What the solids allow, if they are at hand.
-
-    Raises
-    ------
-    StandoffError
-        If it does not hold the local minima.
     """
     if recording.minima is None:
         raise StandoffError(

@@ -69,14 +69,8 @@ NAMED = 3
 def write_table(recording: RecordedFrames, file: BinaryIO) -> None:
     """Write a recording to a stream; the same run gives the same file, byte for byte.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    TypeError
-        If ``info`` holds what JSON cannot.
-    ValueError
-        If ``info`` is nested too deeply.
+    Raises OSError if the file cannot be written. Raises TypeError if ``info`` holds what JSON
+    cannot. Raises ValueError if ``info`` is nested too deeply.
     """
     pq.write_table(table_of(recording), file)
 
@@ -84,12 +78,8 @@ def write_table(recording: RecordedFrames, file: BinaryIO) -> None:
 def table_of(recording: RecordedFrames) -> Any:
     """Return a recording as a table of PyArrow, with its metadata.
 
-    Raises
-    ------
-    TypeError
-        If ``info`` holds what JSON cannot.
-    ValueError
-        If ``info`` is nested too deeply.
+    Raises TypeError if ``info`` holds what JSON cannot. Raises ValueError if ``info`` is nested too
+    deeply.
     """
     facts = _metadata(recording.info)
     problem, keys = value_problem(facts)

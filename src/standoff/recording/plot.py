@@ -81,10 +81,7 @@ class Stay(NamedTuple):
 def write_plot(recording: RecordedFrames, file: BinaryIO, ending: str) -> None:
     """Draw a recording to a stream in one of `FORMATS`.
 
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
+    Raises OSError if the file cannot be written.
     """
     draw(recording).savefig(file, format=ending)
 

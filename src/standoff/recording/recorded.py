@@ -114,11 +114,8 @@ class RunInfo:
     def law(self) -> Law:
         """The law, made again from `options`.
 
-        Raises
-        ------
-        ValueError
-            Its feedback is a program's own, or the file keeps only its text; or the run was of
-            solids, which follow no law.
+        Raises ValueError: its feedback is a program's own, or the file keeps only its text; or the
+        run was of solids, which follow no law.
         """
         if self.of_solids:
             raise StandoffError(

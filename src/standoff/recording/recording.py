@@ -114,18 +114,15 @@ class Recording(RecordedFrames):
     def automaton(self) -> Automaton | SolidAutomaton:
         """Return the pair's automaton with the visited modes and the switches marked.
 
+        Raises ValueError: in a recording of convex bodies opened from a file, which does not hold
+        the bodies; or of solids that were tracked without ``minima=``.
+
         Returns
         -------
         Automaton or SolidAutomaton
             The latter of solids: one automaton per local minimum. In a recording opened from a
             file, which does not hold the solids, it has what was visited and taken, not what else
             they allow.
-
-        Raises
-        ------
-        ValueError
-            In a recording of convex bodies opened from a file, which does not hold the bodies; or
-            of solids that were tracked without ``minima=``.
         """
         if self.info.of_solids:
             from standoff.automaton.parallel import solid_automaton
@@ -146,6 +143,11 @@ class Recording(RecordedFrames):
     def plot(self, path: str | Path | None = None) -> Figure:
         """Draw distance and bound, gap and residual, modes and parameters over time.
 
+        Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra.
+        Raises TypeError if `path` is neither a string nor a Path. Raises ValueError if it is empty,
+        or the file has another ending. Raises OSError if the file cannot be written, or is a
+        folder, a FIFO or a device. A link stays: what it leads to is replaced.
+
         Parameters
         ----------
         path : str or path, optional
@@ -154,18 +156,6 @@ class Recording(RecordedFrames):
         Returns
         -------
         matplotlib.figure.Figure
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty, or the file has another ending.
-        OSError
-            If the file cannot be written, or is a folder, a FIFO or a device.
-            A link stays: what it leads to is replaced.
         """
         from standoff.recording import plot as recording_plot
 
@@ -191,6 +181,10 @@ class Recording(RecordedFrames):
 
         Show it, or save it: ``recording.animate().save("run.gif", writer="pillow")``.
 
+        Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra.
+        Raises ValueError: in a recording opened from a file or copied, which does not hold bodies
+        or paths; one of solids; fewer than one picture; a view that is not two finite numbers.
+
         Parameters
         ----------
         pictures : int
@@ -202,14 +196,6 @@ class Recording(RecordedFrames):
         Returns
         -------
         matplotlib.animation.FuncAnimation
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        ValueError
-            In a recording opened from a file or copied, which does not hold bodies or paths; one of
-            solids; fewer than one picture; a view that is not two finite numbers.
         """
         if self.pair is None or self.paths is None:
             raise StandoffError(
@@ -225,16 +211,12 @@ class Recording(RecordedFrames):
     def to_arrow(self) -> Any:
         """Return a table of PyArrow: what `save` writes, with the same columns and metadata.
 
+        Raises ModuleNotFoundError if pyarrow is not installed; the message names the extra. Raises
+        ValueError if ``info.source`` is nested too deeply.
+
         Returns
         -------
         pyarrow.Table
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If pyarrow is not installed; the message names the extra.
-        ValueError
-            If ``info.source`` is nested too deeply.
         """
         from standoff.recording.file import table_of
 
@@ -248,14 +230,11 @@ class Recording(RecordedFrames):
         are left out: ``pandas.DataFrame(recording.events)`` is a table of them. The facts of
         ``info`` are in ``attrs["standoff"]``.
 
+        Raises ModuleNotFoundError if pandas is not installed; the message names the extra.
+
         Returns
         -------
         pandas.DataFrame
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If pandas is not installed; the message names the extra.
         """
         from standoff.recording.data_frame import data_frame
 
@@ -266,17 +245,10 @@ class Recording(RecordedFrames):
 
         docs/scene-format.md lists the columns; any reader of Parquet understands them.
 
-        Raises
-        ------
-        ModuleNotFoundError
-            If pyarrow is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty, or ``info.source`` is nested too deeply.
-        OSError
-            If the file cannot be written, or is a folder, a FIFO or a device.
-            A link stays: what it leads to is replaced.
+        Raises ModuleNotFoundError if pyarrow is not installed; the message names the extra. Raises
+        TypeError if `path` is neither a string nor a Path. Raises ValueError if it is empty, or
+        ``info.source`` is nested too deeply. Raises OSError if the file cannot be written, or is a
+        folder, a FIFO or a device. A link stays: what it leads to is replaced.
         """
         target = file_name(path)
         from standoff.recording.file import write_table
@@ -290,6 +262,11 @@ def open_recording(path: str | Path) -> Recording:
     Everything is as it was, except ``pair``: the file holds the bodies' names and digests, not the
     bodies.
 
+    Raises TypeError if `path` is neither a string nor a Path. Raises FileNotFoundError if there is
+    no such file. Raises ValueError if it is not a Parquet file or is truncated, is not a recording,
+    or is of a format that this Standoff does not read. Raises ModuleNotFoundError if pyarrow is not
+    installed; the message names the extra.
+
     Parameters
     ----------
     path : str or Path
@@ -298,18 +275,6 @@ def open_recording(path: str | Path) -> Recording:
     Returns
     -------
     Recording
-
-    Raises
-    ------
-    TypeError
-        If `path` is neither a string nor a Path.
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it is not a Parquet file or is truncated, is not a recording, or is of a format that this
-        Standoff does not read.
-    ModuleNotFoundError
-        If pyarrow is not installed; the message names the extra.
     """
     from standoff.recording.file import read_table
 

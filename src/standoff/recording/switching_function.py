@@ -54,10 +54,8 @@ class SwitchingFunction:
     def __call__(self, pose_a: Array, pose_b: Array) -> float:
         """Return its value at two flat poses, (12,) each.
 
-        Raises
-        ------
-        NoMinimum
-            If the distance has no minimum near the last one with the lower feature held.
+        Raises NoMinimum if the distance has no minimum near the last one with the lower feature
+        held.
         """
         poses = pose_a, pose_b
         across, q = self._minimise(poses)

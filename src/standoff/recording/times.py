@@ -20,10 +20,7 @@ number comes from a step or a duration in the wrong unit."""
 def even_times(start: float, duration: float, step: float) -> Array:
     """Return ``start + k step`` within the duration [s], shape (n,).
 
-    Raises
-    ------
-    ValueError
-        If there are fewer than two, or more than `MOST_FRAMES`.
+    Raises ValueError if there are fewer than two, or more than `MOST_FRAMES`.
     """
     if not math.isfinite(start):
         raise StandoffError(f"start = {start}: give a finite time in s.", "start", start)

@@ -70,6 +70,10 @@ def track(
 ) -> Recording:
     """Track a pair along two paths and record every frame.
 
+    Raises ValueError: times that give fewer than two frames or more than ten million, or what a
+    path refuses. Raises TypeError if there is no tracker, or a path is neither a path nor a
+    function nor a pose.
+
     Parameters
     ----------
     tracker : Tracker or SolidTracker
@@ -91,13 +95,6 @@ def track(
     Returns
     -------
     Recording
-
-    Raises
-    ------
-    ValueError
-        Times that give fewer than two frames or more than ten million, or what a path refuses.
-    TypeError
-        If there is no tracker, or a path is neither a path nor a function nor a pose.
     """
     if not isinstance(tracker, Tracker | Recorded):
         raise StandoffTypeError(
@@ -123,6 +120,9 @@ def track_along(
 ) -> Recording:
     """Track a pair at given times along two paths; `track` with the parts in hand.
 
+    Raises TypeError if the state is not one. Raises ValueError: what a path or the tracker refuses;
+    a state of another pair.
+
     Parameters
     ----------
     tracker : Tracker or SolidTracker
@@ -139,13 +139,6 @@ def track_along(
     Returns
     -------
     Recording
-
-    Raises
-    ------
-    TypeError
-        If the state is not one.
-    ValueError
-        What a path or the tracker refuses; a state of another pair.
     """
     if isinstance(tracker, Recorded):
         paths = path_a, path_b

@@ -77,6 +77,9 @@ def certify_box(
 ) -> BoxProof:
     """Prove that a robot keeps a clearance at all configurations in a box.
 
+    Raises TypeError, ValueError: bounds of another size, with NaN, infinite, in the wrong order or
+    outside the joints' limits; a ball or a free joint that is not held fixed; a negative clearance.
+
     Parameters
     ----------
     robot : Robot
@@ -96,12 +99,6 @@ def certify_box(
     Returns
     -------
     BoxProof
-
-    Raises
-    ------
-    TypeError, ValueError
-        Bounds of another size, with NaN, infinite, in the wrong order or outside the joints'
-        limits; a ball or a free joint that is not held fixed; a negative clearance.
     """
     clearance = not_negative(clearance, "clearance")
     whole_number(max_boxes, "max_boxes")
@@ -114,9 +111,7 @@ def certify_box(
 def _checked(robot: RobotModel, lower: Any, upper: Any) -> tuple[Array, Array]:
     """The corners of a box.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     nq, joints = robot.nq, robot.joints
     both = []

@@ -29,6 +29,11 @@ def casadi_distance(
     With exact first and second derivatives, for costs and constraints. Make it once: it is kept
     until the program ends. Call it with MX expressions, not SX.
 
+    Raises ModuleNotFoundError: CasADi is not installed; the message names the extra. Raises
+    TypeError: no robot. Raises ValueError: a pair that there is not, an unknown choice or a bad
+    name. When called, within CasADi's own RuntimeError: q that is not finite; undefined
+    derivatives, if asked.
+
     Parameters
     ----------
     robot : Robot
@@ -45,16 +50,6 @@ def casadi_distance(
     -------
     casadi.Callback
         q (nq, 1) to the distances (k, 1), length.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        CasADi is not installed; the message names the extra.
-    TypeError
-        No robot.
-    ValueError
-        A pair that there is not, an unknown choice or a bad name. When called, within CasADi's own
-        RuntimeError: q that is not finite; undefined derivatives, if asked.
     """
     check_robot(robot)
     check_name(name)

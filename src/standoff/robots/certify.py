@@ -48,6 +48,10 @@ def certify(
 ) -> PathProof:
     """Prove that a robot on a joint path keeps a clearance at every instant.
 
+    Raises TypeError, ValueError: a path with one waypoint, of another size, with NaN or outside the
+    joints' limits; a function without its greatest speeds, or one that is faster; a negative
+    clearance.
+
     Parameters
     ----------
     robot : Robot
@@ -68,12 +72,6 @@ def certify(
     Returns
     -------
     PathProof
-
-    Raises
-    ------
-    TypeError, ValueError
-        A path with one waypoint, of another size, with NaN or outside the joints' limits; a
-        function without its greatest speeds, or one that is faster; a negative clearance.
     """
     clearance = not_negative(clearance, "clearance")
     whole_number(max_steps, "max_steps")

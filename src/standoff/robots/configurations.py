@@ -45,9 +45,7 @@ class Configurations:
     def __call__(self, q: Any) -> Array:
         """A configuration (nq,), with unit parts of length 1.
 
-        Raises
-        ------
-        StandoffError
+        Raises StandoffError.
         """
         shape = shape_of(q)
         if shape is not None and shape != (self.nq,):

@@ -48,10 +48,7 @@ class Kinematics(Protocol):
     def check(self, q: Any) -> Array:
         """A configuration (nq,), with quaternions of length 1.
 
-        Raises
-        ------
-        StandoffError
-            Another size, a number that is not finite, a quaternion that is none.
+        Raises StandoffError: another size, a number that is not finite, a quaternion that is none.
         """
 
     def poses(self, q: Array) -> Array:

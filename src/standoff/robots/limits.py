@@ -17,10 +17,7 @@ Array = NDArray[np.float64]
 def check_limits(robot: RobotModel, q: Array, argument: str, times: Any = None) -> None:
     """Refuse configurations (m, nq) outside the robot's limits.
 
-    Raises
-    ------
-    StandoffError
-        The first of them, with its joint, and its time if times (m,) are given.
+    Raises StandoffError: the first of them, with its joint, and its time if times (m,) are given.
     """
     lower, upper = robot.lower, robot.upper
     size = LIMIT_SLACK * np.maximum(1.0, np.abs(q))

@@ -85,10 +85,7 @@ def read_as(
 ) -> JointKind:
     """How a joint of a kind reads a joint of one number, or of (cos, sin).
 
-    Raises
-    ------
-    StandoffError
-        After a turn of the one the other would be elsewhere.
+    Raises StandoffError: after a turn of the one the other would be elsewhere.
     """
     if numbers == 1:
         return JointKind.HINGE if kind is JointKind.CONTINUOUS else kind

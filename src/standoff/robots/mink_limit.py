@@ -22,6 +22,10 @@ class MinkLimit(Limit):  # type: ignore[misc]
     One row for each pair within the horizon: in a step the distance may lose at most the part
     `gain` of what its proven bound has above the minimum. To first order it is never below that.
 
+    Raises ModuleNotFoundError: mink is not installed; the message names the extra. Raises
+    TypeError: no robot. Raises ValueError: a number out of its range; a horizon that is not above
+    the minimum. When called: a configuration of another model.
+
     Parameters
     ----------
     robot : Robot
@@ -35,16 +39,6 @@ class MinkLimit(Limit):  # type: ignore[misc]
     recover : float
         Of a pair that is below the minimum: the part of what it lacks that a step must win back,
         0 to 1, no unit. 0 only forbids coming nearer. More may leave no solution.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        mink is not installed; the message names the extra.
-    TypeError
-        No robot.
-    ValueError
-        A number out of its range; a horizon that is not above the minimum. When called: a
-        configuration of another model.
     """
 
     def __init__(
@@ -70,10 +64,7 @@ class MinkLimit(Limit):  # type: ignore[misc]
     def compute_qp_inequalities(self, configuration: Any, dt: float) -> Constraint:
         """Rows G, h with G Δq <= h, as mink asks for; Δq is the way of one step, whatever dt is.
 
-        Raises
-        ------
-        ValueError
-            A configuration of another model.
+        Raises ValueError: a configuration of another model.
         """
         self._near.check_model(configuration.model)
         rows = self._near.rows(configuration.q)

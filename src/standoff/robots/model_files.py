@@ -47,14 +47,9 @@ def robot_of_file(
 ) -> Robot:
     """Return the robot of an MJCF file (.xml, .mjcf) or of a URDF file (.urdf).
 
-    Raises
-    ------
-    StandoffError
-        The file is of another kind, or is refused; an option that it does not have.
-    FileNotFoundError
-        There is no such file.
-    ModuleNotFoundError
-        The package that reads it is not installed.
+    Raises StandoffError: the file is of another kind, or is refused; an option that it does not
+    have. Raises FileNotFoundError: there is no such file. Raises ModuleNotFoundError: the package
+    that reads it is not installed.
     """
     options = options or ModelOptions()
     kind = model.suffix.lower()
@@ -82,10 +77,7 @@ def robot_of_file(
 def among(robot: Robot, scene: Scene) -> Robot:
     """Return the robot among the bodies of a scene, where they are at its start.
 
-    Raises
-    ------
-    SceneError
-        A body has the name of a geometry, or the scene is no world.
+    Raises SceneError: a body has the name of a geometry, or the scene is no world.
     """
     scene = scene.as_world
     world, start = scene.world, scene.instant()

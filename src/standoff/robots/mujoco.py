@@ -160,9 +160,7 @@ def load(model: Any, meshes: Meshes, skip: Sequence[str]) -> Loaded:
 def _read(given: Any) -> Any:
     """A model, or one from a file.
 
-    Raises
-    ------
-    StandoffTypeError, StandoffError, FileNotFoundError
+    Raises StandoffTypeError, StandoffError, FileNotFoundError.
     """
     if isinstance(given, mujoco.MjModel):
         return copy.copy(given)  # what is changed in it later is not the robot's

@@ -37,6 +37,10 @@ class MujocoContacts:
     Each contact has the parameters that MuJoCo's own would have: solref, solimp, friction,
     dimensions and margin, mixed by its rules. MuJoCo makes no contact of the same pair.
 
+    Raises ModuleNotFoundError: MuJoCo is not installed; the message names the extra. Raises
+    TypeError: no robot. Raises ValueError: a robot of another package, or with obstacles; a pair
+    that it does not watch.
+
     Parameters
     ----------
     robot : Robot
@@ -53,15 +57,6 @@ class MujocoContacts:
         all that collide are ours. Change its options as you like, not its geoms.
     rows : RobotRows or None
         The answers of the last call, near pairs that do not touch included.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        MuJoCo is not installed; the message names the extra.
-    TypeError
-        No robot.
-    ValueError
-        A robot of another package, or with obstacles; a pair that it does not watch.
     """
 
     def __init__(self, robot: Robot, pairs: Sequence[tuple[str, str]] | None = None) -> None:
@@ -90,15 +85,13 @@ class MujocoContacts:
 
         Call it after ``mj_collision`` and before ``mj_makeConstraint``; ``step`` does.
 
+        Raises ValueError: contacts that do not fit into MuJoCo's memory: give the model more
+        (``<size memory>``).
+
         Returns
         -------
         int
             How many contacts were added.
-
-        Raises
-        ------
-        ValueError
-            Contacts that do not fit into MuJoCo's memory: give the model more (``<size memory>``).
         """
         self._leave_theirs(data)
         self.rows = rows = self._near.rows(data.qpos)
@@ -134,10 +127,7 @@ class MujocoContacts:
     def step(self, data: Any) -> None:
         """``mj_step`` with these contacts, by the model's integrator but RK4.
 
-        Raises
-        ------
-        ValueError
-            The model asks for RK4, which makes contacts within a step.
+        Raises ValueError: the model asks for RK4, which makes contacts within a step.
         """
         stepped(self.model, data, self)
 

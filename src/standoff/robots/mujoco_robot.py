@@ -13,9 +13,7 @@ from standoff.robots.robot import Robot
 def model_of(robot: Robot) -> tuple[Any, list[int]]:
     """The MuJoCo model of a robot, and the number in it of each of the robot's geometries.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     if not isinstance(robot.kinematics, MujocoKinematics):
         raise StandoffError(
@@ -34,10 +32,7 @@ def model_of(robot: Robot) -> tuple[Any, list[int]]:
 def watched(robot: Robot, pairs: Sequence[tuple[str, str]]) -> list[tuple[int, int]]:
     """Numbers i < j of the robot's geometries, of pairs given by names.
 
-    Raises
-    ------
-    StandoffError
-        A pair that the robot does not watch.
+    Raises StandoffError: a pair that the robot does not watch.
     """
     names = robot.geoms.names
     known = {frozenset(pair) for pair in robot.pairs}

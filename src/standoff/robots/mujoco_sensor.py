@@ -22,6 +22,10 @@ class MujocoSensor:
     bound follows. Of a pair beyond the horizon both are the horizon, as MuJoCo's own have their
     cutoff. In MJCF: ``<user name="gap" dim="2" needstage="pos" datatype="real"/>``.
 
+    Raises ModuleNotFoundError: MuJoCo is not installed; the message names the extra. Raises
+    TypeError: no robot. Raises ValueError: a sensor that the model does not have, or not as a user
+    sensor of dimension 1 or 2 of the position stage; a pair that the robot does not watch.
+
     Parameters
     ----------
     robot : Robot
@@ -30,16 +34,6 @@ class MujocoSensor:
         By the sensor's name the two geoms' names, or None for the nearest of all pairs.
     within : float, optional
         The horizon, length; the robot's own if not given.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        MuJoCo is not installed; the message names the extra.
-    TypeError
-        No robot.
-    ValueError
-        A sensor that the model does not have, or not as a user sensor of dimension 1 or 2 of the
-        position stage; a pair that the robot does not watch.
     """
 
     def __init__(
@@ -77,9 +71,7 @@ class MujocoSensor:
 def _place(model: Any, name: str) -> tuple[int, int]:
     """Where a sensor's numbers are, and how many.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     k = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_SENSOR, name)
     user = int(mujoco.mjtSensor.mjSENS_USER)

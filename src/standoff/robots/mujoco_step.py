@@ -38,10 +38,7 @@ VELOCITY = (
 def stepped(model: Any, data: Any, give_contacts: Callable[[Any], Any]) -> None:
     """``mj_step`` by the model's integrator but RK4; `give_contacts` is called with the data.
 
-    Raises
-    ------
-    StandoffError
-        The model asks for RK4, which makes contacts within a step.
+    Raises StandoffError: the model asks for RK4, which makes contacts within a step.
     """
     if model.opt.integrator == mujoco.mjtIntegrator.mjINT_RK4:
         raise StandoffError(

@@ -30,9 +30,7 @@ class Near:
     def __init__(self, robot: Robot, minimum: float, within: float | None) -> None:
         """`minimum`: what the horizon must be greater than, length.
 
-        Raises
-        ------
-        StandoffTypeError, StandoffError
+        Raises StandoffTypeError, StandoffError.
         """
         check_robot(robot)
         horizon = robot.within if within is None else positive(within, "within", infinite=True)
@@ -60,9 +58,7 @@ class Near:
     def check_model(self, model: Any) -> None:
         """Refuse a model whose configurations are not the robot's.
 
-        Raises
-        ------
-        StandoffError
+        Raises StandoffError.
         """
         robot = self.robot
         if (model.nq, model.nv) != (robot.nq, robot.nv):
@@ -76,9 +72,7 @@ class Near:
 def check_robot(robot: Any) -> None:
     """Refuse what is no robot.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if not isinstance(robot, Robot):
         raise StandoffTypeError(

@@ -22,10 +22,8 @@ Obstacles = dict[str, tuple[Shape | Compound, Pose]]
 def read_obstacles(given: Any, taken: Collection[str]) -> Obstacles:
     """Obstacles by name.
 
-    Raises
-    ------
-    StandoffTypeError, StandoffError
-        No mapping, no body, no pose, a name that a geometry has.
+    Raises StandoffTypeError, StandoffError: no mapping, no body, no pose, a name that a geometry
+    has.
     """
     if not isinstance(given, Mapping):
         raise StandoffTypeError(

@@ -195,9 +195,7 @@ class BoundedPath(JointPath):
         Each motion is looked at by itself, and by its length where its velocity has several
         numbers: in axes that turn, one number's part of the way is not its speed's.
 
-        Raises
-        ------
-        StandoffError
+        Raises StandoffError.
         """
         if len(times) < 2:
             return

@@ -14,10 +14,8 @@ from standoff.robots.spline_path import SplinePath, is_spline
 def joint_path(path: Any, kinematics: Kinematics, times: Any = None) -> JointPath:
     """Read what may be a path.
 
-    Raises
-    ------
-    StandoffError
-        Waypoints of another size, fewer than two, NaN; a function without its greatest speeds.
+    Raises StandoffError: waypoints of another size, fewer than two, NaN; a function without its
+    greatest speeds.
     """
     if isinstance(path, JointPath):
         return path

@@ -24,6 +24,10 @@ class PinkBarrier(Barrier):  # type: ignore[misc]
     The barrier is the proven bound of each distance less the minimum. It has a fixed number of
     rows, nearest first; rows of no pair are those of a pair at the horizon that does not move.
 
+    Raises ModuleNotFoundError: pink is not installed; the message names the extra. Raises
+    TypeError: no robot. Raises ValueError: a number out of its range; a horizon that is not above
+    the minimum; more rows than pairs. When called: a configuration of another model.
+
     Parameters
     ----------
     robot : Robot
@@ -38,16 +42,6 @@ class PinkBarrier(Barrier):  # type: ignore[misc]
         The horizon, length; the robot's own if not given.
     safe_displacement_gain : float
         As of every barrier of Pink: the weight of its damping near contact.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        Pink is not installed; the message names the extra.
-    TypeError
-        No robot.
-    ValueError
-        A number out of its range; a horizon that is not above the minimum; more rows than pairs.
-        When called: a configuration of another model.
     """
 
     def __init__(

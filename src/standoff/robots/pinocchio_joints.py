@@ -73,10 +73,7 @@ class Rows(NamedTuple):
 def read_joints(model: Any, what: str, follows: Followed | None = None) -> Rows:
     """The tree of a model's joints; ``follows`` says which read the numbers of others.
 
-    Raises
-    ------
-    StandoffError
-        A joint of a kind that is not known; its name and kind are told.
+    Raises StandoffError: a joint of a kind that is not known; its name and kind are told.
     """
     of_joints = np.full(model.njoints, -1)
     names: list[str] = []

@@ -78,6 +78,11 @@ class Robot(RobotModel):
         ``conaffinity``, without parent and child, ``<exclude>`` and bodies that are welded
         together, and with each ``<pair>``.
 
+        Raises ModuleNotFoundError: MuJoCo is not installed; the message names the extra. Raises
+        TypeError: no model. Raises ValueError: geometries that have no exact body, by name, with
+        what to do: meshes without `meshes`, height fields, signed distance functions; flexible
+        bodies; names that nobody has.
+
         Parameters
         ----------
         model : mujoco.MjModel, str or path
@@ -96,16 +101,6 @@ class Robot(RobotModel):
         Returns
         -------
         Robot
-
-        Raises
-        ------
-        ModuleNotFoundError
-            MuJoCo is not installed; the message names the extra.
-        TypeError
-            No model.
-        ValueError
-            Geometries that have no exact body, by name, with what to do: meshes without `meshes`,
-            height fields, signed distance functions; flexible bodies; names that nobody has.
         """
         from standoff.robots.mujoco import load
 
@@ -125,6 +120,11 @@ class Robot(RobotModel):
 
         Its pairs are ``geometry_model.collisionPairs``.
 
+        Raises ModuleNotFoundError: Pinocchio is not installed; the message names the extra. Raises
+        TypeError: no models. Raises ValueError: geometries that have no exact body, by name, with
+        what to do; a geometry model without collision pairs; joints of a kind that is not known;
+        names that nobody has.
+
         Parameters
         ----------
         model : pinocchio.Model
@@ -136,16 +136,6 @@ class Robot(RobotModel):
         Returns
         -------
         Robot
-
-        Raises
-        ------
-        ModuleNotFoundError
-            Pinocchio is not installed; the message names the extra.
-        TypeError
-            No models.
-        ValueError
-            Geometries that have no exact body, by name, with what to do; a geometry model without
-            collision pairs; joints of a kind that is not known; names that nobody has.
         """
         from standoff.robots.pinocchio import load
 
@@ -169,6 +159,11 @@ class Robot(RobotModel):
         Its pairs are all but those of parent and child and of links that are fixed to each other,
         less those that the SRDF disables.
 
+        Raises ModuleNotFoundError: Pinocchio is not installed; the message names the extra. Raises
+        FileNotFoundError: there is no such file. Raises ValueError as ``from_pinocchio``; files of
+        meshes that are not there, no collision geometry at all, mimic joints without `mimic`, a
+        joint in the SRDF that the robot does not have.
+
         Parameters
         ----------
         path, srdf : str or path
@@ -185,16 +180,6 @@ class Robot(RobotModel):
         Returns
         -------
         Robot
-
-        Raises
-        ------
-        ModuleNotFoundError
-            Pinocchio is not installed; the message names the extra.
-        FileNotFoundError
-            There is no such file.
-        ValueError
-            As ``from_pinocchio``; files of meshes that are not there, no collision geometry at
-            all, mimic joints without `mimic`, a joint in the SRDF that the robot does not have.
         """
         from standoff.robots.urdf import UrdfOptions, load
 
@@ -203,6 +188,9 @@ class Robot(RobotModel):
 
     def with_obstacles(self, obstacles: Mapping[str, Any]) -> Robot:
         """The same robot among more obstacles.
+
+        Raises TypeError: no mapping of names to bodies. Raises ValueError: a name that a geometry
+        has, no pose.
 
         Parameters
         ----------
@@ -213,13 +201,6 @@ class Robot(RobotModel):
         Returns
         -------
         Robot
-
-        Raises
-        ------
-        TypeError
-            No mapping of names to bodies.
-        ValueError
-            A name that a geometry has, no pose.
         """
         read = read_obstacles(obstacles, self.geoms.names)
         within = None if self.within == math.inf else self.within
@@ -227,6 +208,8 @@ class Robot(RobotModel):
 
     def clearance(self, q: Any) -> RobotAnswer:
         """The nearest pair at a configuration, from nothing.
+
+        Raises ValueError: a wrong size, a number that is not finite; a robot without pairs.
 
         Parameters
         ----------
@@ -237,17 +220,15 @@ class Robot(RobotModel):
         -------
         RobotAnswer
             Its ``clearance`` is proven for all pairs.
-
-        Raises
-        ------
-        ValueError
-            A wrong size, a number that is not finite; a robot without pairs.
         """
         self._check_pairs()
         return self._nearest(self.kinematics.check(q))
 
     def distances(self, q: Any, within: float | None = None) -> RobotRows:
         """All pairs within a horizon at a configuration, with Jacobian rows, from nothing.
+
+        Raises ValueError as ``clearance``, but a robot without pairs has no rows; a horizon that is
+        not positive.
 
         Parameters
         ----------
@@ -258,17 +239,14 @@ class Robot(RobotModel):
         Returns
         -------
         RobotRows
-
-        Raises
-        ------
-        ValueError
-            As ``clearance``, but a robot without pairs has no rows; a horizon that is not positive.
         """
         horizon = self.within if within is None else positive(within, "within", infinite=True)
         return self._rows(self.kinematics.check(q), self._horizons.world(horizon))
 
     def clearances(self, Q: Any, *, workers: int = 1) -> RobotAnswers:
         """The nearest pair at each of many configurations.
+
+        Raises ValueError as ``clearance``; the number of the row is told.
 
         Parameters
         ----------
@@ -279,11 +257,6 @@ class Robot(RobotModel):
         Returns
         -------
         RobotAnswers
-
-        Raises
-        ------
-        ValueError
-            As ``clearance``; the number of the row is told.
         """
         self._check_pairs()
         shape = shape_of(Q)
@@ -310,6 +283,8 @@ class Robot(RobotModel):
     def step(self, state: RobotState, q: Any) -> tuple[RobotState, RobotRows]:
         """All pairs within the horizon, from the state of a configuration nearby.
 
+        Raises TypeError, ValueError as ``distances``; a state of another robot.
+
         Parameters
         ----------
         state : RobotState
@@ -319,11 +294,6 @@ class Robot(RobotModel):
         Returns
         -------
         (RobotState, RobotRows)
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``distances``; a state of another robot.
         """
         q = self.kinematics.check(q)
         motion = self.kinematics.motion(q)

@@ -111,10 +111,7 @@ class RobotModel(KeepsReadOnly):
         """All pairs within the first of wider and wider horizons that has any, at a configuration
         that is checked.
 
-        Raises
-        ------
-        StandoffError
-            There is no pair.
+        Raises StandoffError: there is no pair.
         """
         motion = self.kinematics.motion(q)
         for world in self._horizons.widening(self.within):

@@ -158,15 +158,12 @@ class RobotStage(WorldStage):
 class RobotPage(ServedPage):
     """A robot in the browser.
 
+    Raises ModuleNotFoundError if matplotlib is not installed, for a proof; and as `ServedPage`.
+
     Parameters
     ----------
     shown : ShownRobot
     host, port : as for `ServedPage`
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If matplotlib is not installed, for a proof; and as `ServedPage`.
     """
 
     def __init__(

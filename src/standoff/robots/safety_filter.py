@@ -60,6 +60,9 @@ class SafetyFilter:
     velocity holds: keep ``gain`` times their time below 1, and the horizon above the minimum and
     what the robot can come nearer in that time.
 
+    Raises ModuleNotFoundError: qpsolvers is not installed; the message names the extra. Raises
+    TypeError, ValueError: no robot; a number or size that does not fit; a solver that is not there.
+
     Parameters
     ----------
     robot : Robot
@@ -76,13 +79,6 @@ class SafetyFilter:
         Of the squares of the changes; ones if not given.
     solver : str
         As ``qpsolvers`` names it.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        qpsolvers is not installed; the message names the extra.
-    TypeError, ValueError
-        No robot; a number or size that does not fit; a solver that is not there.
     """
 
     def __init__(
@@ -117,6 +113,8 @@ class SafetyFilter:
     def filter(self, q: Any, velocity: Any) -> SafeVelocity:
         """The nearest safe velocity.
 
+        Raises ValueError: sizes that do not fit, numbers that are not finite.
+
         Parameters
         ----------
         q : (nq,) array
@@ -127,11 +125,6 @@ class SafetyFilter:
         -------
         SafeVelocity
             UNCHANGED has the velocity as it was given, to the last bit.
-
-        Raises
-        ------
-        ValueError
-            Sizes that do not fit, numbers that are not finite.
         """
         wanted = finite(velocity, "velocity", (self._near.robot.nv,))
         rows = self._near.rows(q)

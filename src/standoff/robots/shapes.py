@@ -111,10 +111,7 @@ def exact_body(kind: str, size: tuple[float, ...]) -> Body:
 def made_geoms(sources: Sequence[Source], meshes: Meshes, skip: Sequence[str], what: str) -> Made:
     """Bodies for all geometries that collide and are not skipped.
 
-    Raises
-    ------
-    StandoffError
-        Some have no body: all are named, with what to do.
+    Raises StandoffError: some have no body: all are named, with what to do.
     """
     sources = _with_own_names(sources)
     left_out = _skipped(sources, skip)

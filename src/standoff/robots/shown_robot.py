@@ -94,10 +94,7 @@ class ShownRobot(NamedTuple):
 def shown_robot(robot: RobotModel, what: Any, times: Any, proof: PathProof | None) -> ShownRobot:
     """Read what is to be shown.
 
-    Raises
-    ------
-    StandoffError
-        As of `view.view`.
+    Raises StandoffError as of `view.view`.
     """
     shape = shape_of(what)
     path = None

@@ -192,10 +192,8 @@ class Sight:
     def placed(self, q: Array, frames: Frames, k: int) -> Array:
         """Where the pieces are, by the package's own kinematics.
 
-        Raises
-        ------
-        StandoffError
-            The joints as read place a geom elsewhere: no bound of its motion would hold.
+        Raises StandoffError: the joints as read place a geom elsewhere: no bound of its motion
+        would hold.
         """
         self.configurations += 1
         placed = pieces_placed(self.model, self.model.all_poses(self.robot.kinematics.poses(q)))

@@ -104,10 +104,7 @@ def _read(spline: Any) -> tuple[Array, Array]:
     """Knots (n + 1,), which do not fall, and coefficients by powers of the time from the knot
     before, the highest first (k + 1, n, nq).
 
-    Raises
-    ------
-    StandoffError
-        Complex numbers, knots that fall.
+    Raises StandoffError: complex numbers, knots that fall.
     """
     from scipy.interpolate import BPoly, BSpline, PPoly
 

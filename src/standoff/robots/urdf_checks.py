@@ -21,10 +21,7 @@ def check_geometry(tree: UrdfTree, geometry: Any, places: dict[str, Any], shapes
     """Hold the geometries against the collision elements: all of them, their kinds, sizes and
     places. ``places``: of each link (Pinocchio's frame of it).
 
-    Raises
-    ------
-    StandoffError
-        The first that is not there, or not as in the file.
+    Raises StandoffError: the first that is not there, or not as in the file.
     """
     objects = {x.name: x for x in geometry.geometryObjects}
     for each in tree.collisions:
@@ -57,9 +54,7 @@ def check_geometry(tree: UrdfTree, geometry: Any, places: dict[str, Any], shapes
 def check_joints(tree: UrdfTree, model: Any, joints: Joints, places: dict[str, Any]) -> None:
     """Hold the joints' places and axes against the file.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     data = model.createData()
     pin.framesForwardKinematics(model, data, pin.neutral(model))
@@ -81,10 +76,7 @@ def check_joints(tree: UrdfTree, model: Any, joints: Joints, places: dict[str, A
 def places_of(tree: UrdfTree, model: Any) -> dict[str, Any]:
     """Pinocchio's frame of each link.
 
-    Raises
-    ------
-    StandoffError
-        A link that Pinocchio did not read.
+    Raises StandoffError: a link that Pinocchio did not read.
     """
     found = {}
     for link in tree.links:

@@ -33,10 +33,7 @@ def stand_ins(
 
     Meshes that are skipped, stood for by bodies, or refused later need no file.
 
-    Raises
-    ------
-    StandoffError
-        Files of meshes that are not there; all are named.
+    Raises StandoffError: files of meshes that are not there; all are named.
     """
     changed = copy.deepcopy(root)
     shapes: dict[str, Shape] = {}

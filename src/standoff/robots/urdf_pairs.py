@@ -40,11 +40,8 @@ def disabled(
 ) -> tuple[dict[frozenset[str], str], list[str]]:
     """Links whose pairs an SRDF disables, and what should be known of the file.
 
-    Raises
-    ------
-    StandoffError
-        An entry that names fewer than two links; a file of another robot, which names none of
-        this one's.
+    Raises StandoffError: an entry that names fewer than two links; a file of another robot, which
+    names none of this one's.
     """
     found: dict[frozenset[str], str] = {}
     notes: list[str] = []

@@ -155,10 +155,8 @@ class UrdfTree(NamedTuple):
 def read_tree(root: Any, file: str) -> UrdfTree:
     """Read a robot element.
 
-    Raises
-    ------
-    StandoffError
-        An element that is damaged, by its link or joint, and what it is to be; no tree of links.
+    Raises StandoffError: an element that is damaged, by its link or joint, and what it is to be; no
+    tree of links.
     """
     reader = _Reader(file)
     reader.check_expanded(root)
@@ -180,10 +178,7 @@ def masters(tree: UrdfTree, file: str) -> dict[str, tuple[str, float, float]]:
     """Of each joint that mimics another: the joint at the end of the chain, which mimics none, and
     the multiplier and offset by which its number counts.
 
-    Raises
-    ------
-    StandoffError
-        A joint that mimics none that moves by one number, or itself.
+    Raises StandoffError: a joint that mimics none that moves by one number, or itself.
     """
     joints = {joint.name: joint for joint in tree.joints}
     found = {}

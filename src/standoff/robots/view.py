@@ -24,6 +24,10 @@ def view(
 ) -> RobotPage:
     """Show a robot in the browser (docs/robots.md).
 
+    Raises ModuleNotFoundError: viser is not installed, or with a proof matplotlib; the message
+    names the extra. Raises TypeError: a proof that is none. Raises ValueError: a configuration or a
+    path of another size; a proof of another path, or of none; a port that is not available.
+
     Parameters
     ----------
     robot : Robot
@@ -45,16 +49,6 @@ def view(
     RobotPage
         It serves until ``close``, or until the end of its ``with`` block; open its ``address``. In
         a notebook it shows itself.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        viser is not installed, or with a proof matplotlib; the message names the extra.
-    TypeError
-        A proof that is none.
-    ValueError
-        A configuration or a path of another size; a proof of another path, or of none; a port that
-        is not available.
     """
     from standoff.robots.robot_page import RobotPage
 

@@ -41,6 +41,9 @@ KEPT = ".json"
 def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromFile:
     """Return the part that a table with ``body`` names.
 
+    Raises SceneError: a missing file, one of another kind or that is refused, a unit that no file
+    has, several parts and none named, an unknown part, a package that is not installed.
+
     Parameters
     ----------
     table : Table
@@ -49,12 +52,6 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
         The scene's label of lengths.
     beside : sequence of str
         Keys of the table that are none of these.
-
-    Raises
-    ------
-    SceneError
-        A missing file, one of another kind or that is refused, a unit that no file has, several
-        parts and none named, an unknown part, a package that is not installed.
     """
     table.expect(*KEYS, *beside)
     path = existing_file(table, "body", 'body = "part.step"')

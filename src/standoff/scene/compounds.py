@@ -17,6 +17,9 @@ COMPOUND = "compound"
 def read_solid(table: Table, unit: str) -> Shape | Compound:
     """Return what a ``[bodies.NAME]`` table describes.
 
+    Raises SceneError as of `read_body` and `read_file_body`; a compound without pieces, or planar
+    pieces among spatial ones.
+
     Parameters
     ----------
     table : Table
@@ -24,12 +27,6 @@ def read_solid(table: Table, unit: str) -> Shape | Compound:
         and a table ``pieces``.
     unit : str
         The scene's label of lengths, to which those of CAD files are converted.
-
-    Raises
-    ------
-    SceneError
-        As of `read_body` and `read_file_body`; a compound without pieces, or planar pieces among
-        spatial ones.
     """
     if "body" in table:
         part = read_file_body(table, unit)

@@ -67,10 +67,7 @@ CURVES: Mapping[str, CurveKind] = {
 def read_curve(table: Table) -> Curve:
     """Return the planar curve that one table of ``curves`` describes.
 
-    Raises
-    ------
-    SceneError
-        At an unknown kind or key, or a value that the curve refuses.
+    Raises SceneError: at an unknown kind or key, or a value that the curve refuses.
     """
     kind = CURVES[table.choice("kind", list(CURVES))]
     table.expect("kind", *kind.keys)

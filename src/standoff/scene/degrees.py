@@ -19,16 +19,13 @@ def with_degrees(keys: Iterable[str]) -> list[str]:
 def in_radians(table: Table, numbers: Iterable[str] = (), vectors: Iterable[str] = ()) -> Table:
     """Return the table with what it says in degrees also under the keys in radians.
 
+    Raises SceneError: at an angle that is given both ways, or that is not a finite number.
+
     Parameters
     ----------
     table : Table
     numbers, vectors : iterable of str
         Keys in radians, or radians per second, of one number and of three.
-
-    Raises
-    ------
-    SceneError
-        At an angle that is given both ways, or that is not a finite number.
     """
     found: dict[str, object] = {}
     for key in numbers:

@@ -60,6 +60,9 @@ class Coupled(NamedTuple):
 def read_coupled(top: Table, names: list[str], period: float | None = None) -> Coupled | None:
     """Return what ``[coupler]`` and ``[device]`` describe; None where there is neither.
 
+    Raises SceneError: one of the two without the other, an unknown key, or a value that what it
+    describes refuses: a stiffness that is not passive too.
+
     Parameters
     ----------
     top : Table
@@ -68,12 +71,6 @@ def read_coupled(top: Table, names: list[str], period: float | None = None) -> C
         Of the free bodies.
     period : float, optional
         Of the device [s], in place of the file's.
-
-    Raises
-    ------
-    SceneError
-        One of the two without the other, an unknown key, or a value that what it describes
-        refuses: a stiffness that is not passive too.
     """
     if "coupler" not in top and "device" not in top:
         return None

@@ -16,11 +16,8 @@ ERRORS = 4
 def read_feedback(table: Table) -> Feedback:
     """Return the feedback that a table describes: its ``kind``, and its class's fields as keys.
 
-    Raises
-    ------
-    SceneError
-        At an unknown kind or key, a number that is missing or not above zero, and what the
-        feedback refuses.
+    Raises SceneError: at an unknown kind or key, a number that is missing or not above zero, and
+    what the feedback refuses.
     """
     kind = KINDS[table.choice("kind", list(KINDS))]
     if kind is GainMatrix:

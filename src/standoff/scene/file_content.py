@@ -74,10 +74,7 @@ def of_a_simulation(top: Table | Mapping[str, object]) -> str | None:
 def is_simulation(file: str | os.PathLike[str]) -> bool:
     """Is a file the scene of a simulation?
 
-    Raises
-    ------
-    SceneError
-        If the file is missing or is not TOML.
+    Raises SceneError if the file is missing or is not TOML.
     """
     path = Path(file)
     try:
@@ -91,6 +88,9 @@ def read_content(
 ) -> FileContent:
     """Read a scene's file.
 
+    Raises SceneError if the file is missing or is not TOML, or anything in what is read is unknown,
+    missing, of the wrong type or shape, or refused by the shape or pose that it describes.
+
     Parameters
     ----------
     file : str or path
@@ -99,12 +99,6 @@ def read_content(
         Those that the top of this kind of scene may have besides `KEYS`.
     refuse_other_kind : callable
         Raises SceneError with the command to use if the file is of the other kind.
-
-    Raises
-    ------
-    SceneError
-        If the file is missing or is not TOML, or anything in what is read is unknown, missing, of
-        the wrong type or shape, or refused by the shape or pose that it describes.
     """
     path = Path(file)
     text = text_of(path)

@@ -63,10 +63,7 @@ def _missing(path: Path, name: str, folder: str) -> str:
 def existing_file(table: Table, key: str, example: str) -> Path:
     """Return the file that `key` names, relative to the scene file.
 
-    Raises
-    ------
-    SceneError
-        If the key or the file is missing; `example` is the line to add.
+    Raises SceneError if the key or the file is missing; `example` is the line to add.
     """
     name = table.text(key, example=example)
     path = (table.file.parent if table.file is not None else Path()) / name
@@ -95,10 +92,8 @@ def text_of(path: Path) -> str:
 def toml_tables(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text.
 
-    Raises
-    ------
-    SceneError
-        If it is not TOML, is nested too deeply, or holds a number of more digits than Python reads.
+    Raises SceneError if it is not TOML, is nested too deeply, or holds a number of more digits than
+    Python reads.
     """
     problem = text_problem(text, TOML)
     if problem:

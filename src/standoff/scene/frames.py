@@ -18,10 +18,7 @@ from standoff.scene.settings import DEFAULT_STEP, SAMPLES, TrackSettings
 def time_span(motions: Iterable[Motion]) -> tuple[float, float]:
     """Return the scene times [s] between which every motion is known; infinite where all are.
 
-    Raises
-    ------
-    SceneError
-        If the samples of two motions have no time in common.
+    Raises SceneError if the samples of two motions have no time in common.
     """
     sampled = [motion.sample_times for motion in motions if motion.sample_times.size]
     first = max((float(times[0]) for times in sampled), default=-math.inf)
@@ -54,10 +51,7 @@ def check_instant(time: float, settings: TrackSettings, motions: Iterable[Motion
     They go from the start to the end of the duration, or of the pose samples. A scene that has
     neither has no end time.
 
-    Raises
-    ------
-    SceneError
-        If it lies outside, or is not finite.
+    Raises SceneError if it lies outside, or is not finite.
     """
     motions = list(motions)
     check_time(time, motions, "time")
@@ -90,10 +84,8 @@ def start_time(settings: TrackSettings, motions: Iterable[Motion]) -> float:
 def time_window(settings: TrackSettings, motions: Iterable[Motion]) -> tuple[float, float]:
     """Return the times [s] between which the pair is looked at; no frame need lie between them.
 
-    Raises
-    ------
-    SceneError
-        If the end is not given, is beyond the samples, or is not later than the start.
+    Raises SceneError if the end is not given, is beyond the samples, or is not later than the
+    start.
     """
     motions = list(motions)
     start = start_time(settings, motions)
@@ -114,11 +106,8 @@ def frame_times(settings: TrackSettings, motions: Iterable[Motion]) -> Array:
     Without a ``step`` the frames are the pose samples' own times if a body moves by samples, else
     `DEFAULT_STEP` apart. With a step they are ``start + k step``, the last one not beyond the end.
 
-    Raises
-    ------
-    SceneError
-        If the times are not given or not possible: no duration and no samples, a duration beyond
-        the samples, ``step = "samples"`` without samples, or too many frames.
+    Raises SceneError if the times are not given or not possible: no duration and no samples, a
+    duration beyond the samples, ``step = "samples"`` without samples, or too many frames.
     """
     motions = list(motions)
     start = start_time(settings, motions)

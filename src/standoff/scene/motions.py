@@ -147,18 +147,16 @@ MOTIONS: Mapping[str, MotionKind] = {
 def read_motion(table: Table, placement: Pose | None) -> Motion:
     """Return the motion that a ``[motions.NAME]`` table describes.
 
+    Raises SceneError: at an unknown kind or key, a value that the motion refuses, a file that is
+    missing or cannot be read, or a placement together with a motion that gives the whole pose
+    itself.
+
     Parameters
     ----------
     table : Table
         With ``kind``, the kind's own keys, and optionally ``offset`` and ``spin``.
     placement : Pose or None
         The body's own placement, if the scene gives one.
-
-    Raises
-    ------
-    SceneError
-        At an unknown kind or key, a value that the motion refuses, a file that is missing or cannot
-        be read, or a placement together with a motion that gives the whole pose itself.
     """
     kind = MOTIONS[table.choice("kind", list(MOTIONS))]
     own = [key + ENDING for key in kind.keys if key in (*ANGLES, *ANGLE_VECTORS)]

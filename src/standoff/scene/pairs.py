@@ -37,6 +37,9 @@ def read_pairs(
 ) -> tuple[Pair, ...]:
     """Return the pairs of a scene, at least one unless it has a world.
 
+    Raises SceneError if neither or both are given, a body is unknown, a compound or paired with
+    itself, two names are the same, or a pair's settings do not go together.
+
     Parameters
     ----------
     top : Table
@@ -45,12 +48,6 @@ def read_pairs(
         Names of the bodies.
     compounds : collection of str
         Those of several pieces: they are in no pair.
-
-    Raises
-    ------
-    SceneError
-        If neither or both are given, a body is unknown, a compound or paired with itself, two
-        names are the same, or a pair's settings do not go together.
     """
     if "world" in top and "pair" not in top and "pairs" not in top:
         return ()

@@ -102,6 +102,9 @@ def file_parts(
 ) -> FileParts:
     """The parts of a file, by its ending.
 
+    Raises ImportError, OSError, StandoffError as the readers of its kind; `BodyError` with what to
+    do in the words of a scene.
+
     Parameters
     ----------
     path : Path
@@ -113,11 +116,6 @@ def file_parts(
         Of CAD files.
     instead : "", "hull" or "pieces", optional
         What stands for meshes.
-
-    Raises
-    ------
-    ImportError, OSError, StandoffError
-        As the readers of its kind; `BodyError` with what to do in the words of a scene.
     """
     written = path.stat()
     try:

@@ -63,11 +63,8 @@ PATCHES: Mapping[str, PatchKind] = {
 def read_patches(table: Table) -> list[Surface]:
     """Return the patches of a body, from its own tables or from the file that it names.
 
-    Raises
-    ------
-    SceneError
-        At an unknown kind or key, a value that the patch refuses, or a file that is missing,
-        truncated, or of another format or version.
+    Raises SceneError: at an unknown kind or key, a value that the patch refuses, or a file that is
+    missing, truncated, or of another format or version.
     """
     given = table.only_one(("patches", "file"))
     if given == "file":

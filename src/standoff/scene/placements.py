@@ -20,15 +20,12 @@ POSE_KEYS = ("position", *ORIENTATIONS)
 def read_pose(table: Table) -> Pose:
     """Return the pose that a table describes, the identity where nothing is said.
 
+    Raises SceneError: at an unknown key, two orientations, or one that is not a rotation.
+
     Parameters
     ----------
     table : Table
         With optionally ``position`` and one of `ORIENTATIONS`.
-
-    Raises
-    ------
-    SceneError
-        At an unknown key, two orientations, or one that is not a rotation.
     """
     table.expect(*POSE_KEYS)
     position = in_space(table, "position") if "position" in table else np.zeros(3)

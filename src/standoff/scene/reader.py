@@ -95,10 +95,7 @@ class Table:
     def expect(self, *keys: str) -> None:
         """Refuse every key but these.
 
-        Raises
-        ------
-        SceneError
-            At the first other key, with the nearest of these.
+        Raises SceneError: at the first other key, with the nearest of these.
         """
         self._expected = keys
         for key in self._content:

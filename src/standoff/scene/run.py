@@ -24,6 +24,9 @@ from standoff.tracking import Proximity, Tracker, distance
 def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity | SolidProximity]:
     """Return the pair's certified distance at one instant, without a tracker.
 
+    Raises SceneError if the instant is outside the scene's times, or the pair cannot be asked for a
+    distance.
+
     Parameters
     ----------
     scene : Scene
@@ -34,11 +37,6 @@ def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity | S
     -------
     (float, Proximity or SolidProximity)
         The instant and the answer.
-
-    Raises
-    ------
-    SceneError
-        If the instant is outside the scene's times, or the pair cannot be asked for a distance.
     """
     instant = scene.instant(time)
     a, b = scene.pair_shapes
@@ -57,6 +55,8 @@ def first_impact(
 
     A search needs no frames: it begins at the start and ends after the duration.
 
+    Raises SceneError if the times are not possible, or the pair cannot be asked for a distance.
+
     Parameters
     ----------
     scene : Scene
@@ -68,11 +68,6 @@ def first_impact(
     Returns
     -------
     Impact
-
-    Raises
-    ------
-    SceneError
-        If the times are not possible, or the pair cannot be asked for a distance.
     """
     start, end = scene.window(settings)
     duration = end - start
@@ -87,10 +82,7 @@ def first_impact(
 def prepare(scene: Scene, settings: TrackSettings) -> tuple[Tracker, Array]:
     """Return the tracker and the frame times of a run, all checked.
 
-    Raises
-    ------
-    SceneError
-        If the times are not possible or the tracker refuses its settings.
+    Raises SceneError if the times are not possible or the tracker refuses its settings.
     """
     times = scene.times(settings)
     a, b = scene.pair_shapes
@@ -107,6 +99,9 @@ def record(
 ) -> Recording:
     """Track the scene's pair over all frames.
 
+    Raises SceneError as `prepare`, or if the pair cannot be tracked, as a planar body out of its
+    plane.
+
     Parameters
     ----------
     scene : Scene
@@ -118,11 +113,6 @@ def record(
     Returns
     -------
     Recording
-
-    Raises
-    ------
-    SceneError
-        As `prepare`, or if the pair cannot be tracked, as a planar body out of its plane.
     """
     settings = settings or scene.settings
     tracker, times = prepare(scene, settings)

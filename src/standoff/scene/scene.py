@@ -69,10 +69,7 @@ class Scene:
     def selected(self) -> Pair:
         """The pair that the properties below refer to.
 
-        Raises
-        ------
-        SceneError
-            If the scene has a world and no pair.
+        Raises SceneError if the scene has a world and no pair.
         """
         if self.seen is None:
             raise SceneError(
@@ -96,10 +93,7 @@ class Scene:
     def select(self, name: str) -> Scene:
         """Return the same scene seen through the pair of that name.
 
-        Raises
-        ------
-        SceneError
-            If no pair has it.
+        Raises SceneError if no pair has it.
         """
         for pair in self.pairs:
             if pair.name == name:
@@ -110,10 +104,7 @@ class Scene:
     def each(self) -> tuple[Scene, ...]:
         """Return the scene once for every pair, in the file's order.
 
-        Raises
-        ------
-        SceneError
-            If it has none.
+        Raises SceneError if it has none.
         """
         if not self.pairs:
             return (replace(self, seen=self.selected),)
@@ -133,10 +124,7 @@ class Scene:
     def pair_bodies(self) -> tuple[Body, Body]:
         """Bodies A and B, where only convex ones go.
 
-        Raises
-        ------
-        SceneError
-            If one of them is a solid that need not be convex.
+        Raises SceneError if one of them is a solid that need not be convex.
         """
         a, b = self.pair_shapes
         for name, body in zip(self.pair, (a, b), strict=True):
@@ -181,10 +169,7 @@ class Scene:
     def world(self) -> World:
         """The bodies and which pairs of them count, by ``[world]``; without one, the scene's pairs.
 
-        Raises
-        ------
-        SceneError
-            If the bodies are no world.
+        Raises SceneError if the bodies are no world.
         """
         return self.world_with()
 
@@ -196,6 +181,8 @@ class Scene:
     ) -> World:
         """Return the world with another horizon or law.
 
+        Raises SceneError if the bodies are no world, as with two half-spaces that would be a pair.
+
         Parameters
         ----------
         within : float, optional
@@ -204,11 +191,6 @@ class Scene:
             With the law; the scene's own if not given.
         times : (n,) array, optional
             Of the frames, if it is tracked [s]: the law's gain must hold for the longest step.
-
-        Raises
-        ------
-        SceneError
-            If the bodies are no world, as with two half-spaces that would be a pair.
         """
         rules, bodies = self.rules, self.bodies
         if rules is None:
@@ -256,6 +238,10 @@ class Scene:
 def load_scene(file: str | os.PathLike[str]) -> Scene:
     """Read, check and build a scene.
 
+    Raises SceneError if the file is missing or is not TOML, or anything in it is unknown, missing,
+    of the wrong type or shape, not finite, or refused by the shape, pose or motion that it
+    describes. The message names the file, the key and the fix.
+
     Parameters
     ----------
     file : str or path
@@ -264,13 +250,6 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
     Returns
     -------
     Scene
-
-    Raises
-    ------
-    SceneError
-        If the file is missing or is not TOML, or anything in it is unknown, missing, of the wrong
-        type or shape, not finite, or refused by the shape, pose or motion that it describes. The
-        message names the file, the key and the fix.
     """
     content = read_content(file, PAIR_KEYS, _refuse_simulation)
     top, bodies = content.top, content.bodies

@@ -62,17 +62,15 @@ class TrackSettings:
     def overridden(self, given: Mapping[str, object]) -> TrackSettings:
         """Return these settings with those of `given` that are not None put in their place.
 
+        Raises SceneError if a value would also be refused in a scene, or does not go with the
+        others. Its key is then just the name, and no file is named, since the value did not come
+        from one.
+
         Parameters
         ----------
         given : mapping
             Keys and values of a ``[track]`` table. Another ``law`` takes over the options that it
             has too; a gain takes the place of the feedback, and a feedback that of the gain.
-
-        Raises
-        ------
-        SceneError
-            If a value would also be refused in a scene, or does not go with the others. Its key is
-            then just the name, and no file is named, since the value did not come from one.
         """
         table = Table({name: value for name, value in given.items() if value is not None})
         return read_settings(table, usual=self)
@@ -87,6 +85,10 @@ def read_settings(
 ) -> TrackSettings:
     """Return the settings that a ``[track]`` table describes, or a pair's own table over it.
 
+    Raises SceneError: at an unknown key or name, a value that its option does not take, an option
+    that the law does not have, or options that do not go together. The error names the first
+    table's key.
+
     Parameters
     ----------
     *tables : Table
@@ -95,12 +97,6 @@ def read_settings(
         What holds where no table says anything; the library's defaults if not given.
     beside : sequence of str
         Keys of the first table that are not settings.
-
-    Raises
-    ------
-    SceneError
-        At an unknown key or name, a value that its option does not take, an option that the law
-        does not have, or options that do not go together. The error names the first table's key.
     """
     usual = usual or TrackSettings()
     for table, more in zip(tables, (beside, *[()] * len(tables)), strict=False):

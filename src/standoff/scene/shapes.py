@@ -201,6 +201,8 @@ def swept_keys(shape: str) -> tuple[str, ...]:
 def read_body(table: Table, beside: Sequence[str] = ()) -> Body:
     """Return the convex body that a ``[bodies.NAME]`` table describes.
 
+    Raises SceneError: at an unknown shape or key, or a value that the shape refuses.
+
     Parameters
     ----------
     table : Table
@@ -212,11 +214,6 @@ def read_body(table: Table, beside: Sequence[str] = ()) -> Body:
     -------
     Body
         In its own frame, as `standoff.shapes` gives it, then scaled.
-
-    Raises
-    ------
-    SceneError
-        At an unknown shape or key, or a value that the shape refuses.
     """
     kind = SHAPES[table.choice("shape", list(SHAPES))]
     table.expect("shape", "affine", "scale", "rounding", *kind.keys, *beside)

@@ -95,17 +95,15 @@ class SimulationScene:
     def run(self, progress: Progress | None = None, *, contacts: bool = False) -> SystemRun:
         """Simulate, with the scene's device if there is one.
 
+        Raises SceneError: what the operator refuses: bodies that overlap, a motion that left all
+        bounds.
+
         Parameters
         ----------
         progress : callable, optional
             Called now and then with the ticks done and the ticks in all.
         contacts : bool
             Keep all contacts of each record.
-
-        Raises
-        ------
-        SceneError
-            What the operator refuses: bodies that overlap, a motion that left all bounds.
         """
         given: dict[str, Any] = {"progress": progress, "contacts": contacts}
         operator, count = self.operator, (self.ticks, self.every)
@@ -132,6 +130,9 @@ def load_simulation(
 ) -> SimulationScene:
     """Read, check and build the scene of a simulation.
 
+    Raises SceneError if anything in it is unknown, missing, of the wrong type or shape, or refused
+    by what it describes. The message names the file, the key and the fix.
+
     Parameters
     ----------
     file : str or path
@@ -141,12 +142,6 @@ def load_simulation(
     rate : float, optional
         Readings a second of the coupler's device, in place of the file's; the step becomes the
         longest that is not above the file's and fits into their period.
-
-    Raises
-    ------
-    SceneError
-        If anything in it is unknown, missing, of the wrong type or shape, or refused by what it
-        describes. The message names the file, the key and the fix.
     """
     content = read_content(file, SIMULATION_KEYS, _refuse_pair)
     top, bodies = content.top, content.bodies

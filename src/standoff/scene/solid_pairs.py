@@ -20,17 +20,14 @@ OF_SOLIDS = ("tolerance", "deadline")
 def made_tracker(a: Any, b: Any, dt: float, settings: TrackSettings) -> Tracker:
     """The tracker of a pair.
 
+    Raises StandoffError: settings that are not for such a pair, or what the tracker refuses.
+
     Parameters
     ----------
     a, b : Body, Solid or PlanarSolid
     dt : float
         The longest step, s.
     settings : TrackSettings
-
-    Raises
-    ------
-    StandoffError
-        Settings that are not for such a pair, or what the tracker refuses.
     """
     if not (is_solid(a) or is_solid(b)):
         if settings.minima is not None:

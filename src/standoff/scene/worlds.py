@@ -74,6 +74,9 @@ def read_world(
 ) -> WorldRules | None:
     """Return what a scene's ``[world]`` says, None where it has none.
 
+    Raises SceneError: at an unknown key or name, an empty group, a body that is fixed and moves,
+    planar bodies among spatial ones, or a pair of a body with itself.
+
     Parameters
     ----------
     top : Table
@@ -81,12 +84,6 @@ def read_world(
     bodies : mapping of str to Body, Solid or Compound
     moving : collection of str
         Those with a motion.
-
-    Raises
-    ------
-    SceneError
-        At an unknown key or name, an empty group, a body that is fixed and moves, planar bodies
-        among spatial ones, or a pair of a body with itself.
     """
     if "world" not in top:
         return None
@@ -119,10 +116,7 @@ def made_world(
 ) -> World:
     """Return a scene's bodies as a world.
 
-    Raises
-    ------
-    ValueError, TypeError
-        If they are none, as with two half-spaces that would be a pair.
+    Raises ValueError, TypeError if they are none, as with two half-spaces that would be a pair.
     """
     return World(
         bodies,

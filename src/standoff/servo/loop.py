@@ -95,6 +95,10 @@ class Servo(BoundToRun):
     any fault until `engage` again. Used as a context manager, it is started, and stopped
     afterwards.
 
+    Raises StandoffTypeError: an argument of the wrong kind. Raises StandoffError: a system without
+    a coupler, or with driven bodies; a rate that is not the operator's, or not within 10 to 10 000
+    a second; a system without the clocks that are needed.
+
     Parameters
     ----------
     operator : Operator
@@ -121,14 +125,6 @@ class Servo(BoundToRun):
         Ticks a second.
     port : LoopPort
         What a device of your own gives its readings to.
-
-    Raises
-    ------
-    StandoffTypeError
-        An argument of the wrong kind.
-    StandoffError
-        A system without a coupler, or with driven bodies; a rate that is not the operator's, or not
-        within 10 to 10 000 a second; a system without the clocks that are needed.
     """
 
     def __init__(
@@ -204,12 +200,7 @@ class Servo(BoundToRun):
     def start(self) -> None:
         """Connect the device and start the loop; the coupler is at rest.
 
-        Raises
-        ------
-        DeviceError
-            There is no device.
-        StandoffError
-            It was started before.
+        Raises DeviceError: there is no device. Raises StandoffError: it was started before.
         """
         if self._thread is not None:
             raise StandoffError("this servo was already started: make another one.")
@@ -278,15 +269,12 @@ class Servo(BoundToRun):
     def lower_force_limit(self, force: float) -> None:
         """Lower the greatest force from the next tick on; it is never raised.
 
+        Raises StandoffError: a force below zero, or not finite.
+
         Parameters
         ----------
         force : float
             [N]; one above the present limit changes nothing.
-
-        Raises
-        ------
-        StandoffError
-            A force below zero, or not finite.
         """
         self._lower(V.L_FORCE, not_negative(force, "force"))
 
@@ -331,15 +319,12 @@ class Servo(BoundToRun):
     def stop(self) -> ServoReport:
         """End the loop with no force on the handle, and release the device.
 
+        Raises StandoffError: it was never started.
+
         Returns
         -------
         ServoReport
             The same if it had already ended.
-
-        Raises
-        ------
-        StandoffError
-            It was never started.
         """
         if self._thread is None:
             raise StandoffError("this servo was never started: call start first.")

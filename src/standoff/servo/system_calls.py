@@ -33,10 +33,7 @@ class Clocks(NamedTuple):
 def clocks() -> Clocks:
     """Return what the compiled loop waits with.
 
-    Raises
-    ------
-    StandoffError
-        The system has no clock_nanosleep.
+    Raises StandoffError: the system has no clock_nanosleep.
     """
     try:
         libc = ctypes.CDLL(None)

@@ -101,6 +101,10 @@ def solve(
     Free bodies turn in charts of rotation vectors, about the rotation at which a leg began; after a
     turn of 1.5 rad the next leg begins, so their rotations stay rotations.
 
+    Raises StandoffTypeError: no system. Raises StandoffError: wrong shapes and numbers; an unknown
+    method; an M(θ) that is singular; bodies that overlap at the start; a step that the method could
+    not make.
+
     Parameters
     ----------
     system : GeneralisedSystem or System
@@ -122,14 +126,6 @@ def solve(
     Returns
     -------
     Solution, or SystemSolution of a System
-
-    Raises
-    ------
-    StandoffTypeError
-        No system.
-    StandoffError
-        Wrong shapes and numbers; an unknown method; an M(θ) that is singular; bodies that overlap
-        at the start; a step that the method could not make.
     """
     if not isinstance(system, GeneralisedSystem | System):
         raise StandoffTypeError(

@@ -10,11 +10,8 @@ from standoff.simulation.system import System
 def check_contacts(system: System, dt: float, method: str) -> None:
     """Refuse contacts that a method does not follow with a step.
 
-    Raises
-    ------
-    StandoffError
-        A stiffness beyond the largest stable one, or a slip speed below the least, which the
-        message gives.
+    Raises StandoffError: a stiffness beyond the largest stable one, or a slip speed below the
+    least, which the message gives.
     """
     for pair in range(len(system.pairs)):
         _check_stiffness(system, dt, method, pair)

@@ -18,6 +18,8 @@ class HuntCrossley:
     where contact begins (Hunt and Crossley, J. Appl. Mech. 42, 1975). Across the normal friction is
     ``mu F u / sqrt(u² + s²)`` against the slip u.
 
+    Raises StandoffError: a number that is negative or not finite; friction without a slip speed.
+
     Parameters
     ----------
     stiffness : float
@@ -33,11 +35,6 @@ class HuntCrossley:
         Greatest depth [length] for which the contact is meant: its stiffness there is checked
         against the step. A hundredth of the smaller body's size if not given. A run that went
         deeper says so (`SystemRun.deepest`).
-
-    Raises
-    ------
-    StandoffError
-        A number that is negative or not finite; friction without a slip speed.
     """
 
     stiffness: float

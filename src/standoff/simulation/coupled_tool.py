@@ -12,10 +12,7 @@ from standoff.simulation.system import System
 def check_tool(system: System, dt: float, method: str) -> None:
     """Refuse a coupler on whose spring the tool's motion would grow by the step alone.
 
-    Raises
-    ------
-    StandoffError
-        The message gives the largest stable stiffness.
+    Raises StandoffError: the message gives the largest stable stiffness.
     """
     coupler, tool = system.coupler, system.tool
     if coupler is None or tool is None:

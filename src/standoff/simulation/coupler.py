@@ -61,6 +61,10 @@ class VirtualCoupler:
     Until it is engaged, and from the first tick with a fault on until it is engaged again, both
     wrenches are zero.
 
+    Raises StandoffError: a number that is not finite (rates may be infinite), or below zero; a
+    greatest force, rate or age of zero. Raises PassivityError: a stiffness or damping beyond what
+    the device keeps passive; the error has the largest stiffness.
+
     Parameters
     ----------
     stiffness : float
@@ -88,15 +92,6 @@ class VirtualCoupler:
         account of energy.
     controller : PassivityController, optional
         Damps at run time while more energy came out than went in.
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite (rates may be infinite), or below zero; a greatest force, rate
-        or age of zero.
-    PassivityError
-        A stiffness or damping beyond what the device keeps passive; the error has the largest
-        stiffness.
     """
 
     stiffness: float
@@ -155,10 +150,7 @@ class VirtualCoupler:
 
         The account of energy starts again. A state that is engaged is returned as it is.
 
-        Raises
-        ------
-        StandoffTypeError
-            If that is not a `CouplerState`.
+        Raises StandoffTypeError if that is not a `CouplerState`.
         """
         _check_state(state)
         if state.engaged:
@@ -169,10 +161,7 @@ class VirtualCoupler:
     def disengage(self, state: CouplerState) -> CouplerState:
         """Return the state that renders no wrench until it is engaged; this is no fault.
 
-        Raises
-        ------
-        StandoffTypeError
-            If that is not a `CouplerState`.
+        Raises StandoffTypeError if that is not a `CouplerState`.
         """
         _check_state(state)
         return CouplerState(fault=state.fault, counts=state.counts)
@@ -188,6 +177,9 @@ class VirtualCoupler:
         now: float | None = None,
     ) -> tuple[CouplerState, Wrench, Wrench]:
         """Take one tick: from where handle and tool are to the wrenches held until the next.
+
+        Raises StandoffError: a `dt` that is not above zero, a `now` that is not finite, or an
+        invalid state: a fault of the calling program, raised before anything is changed.
 
         Parameters
         ----------
@@ -211,12 +203,6 @@ class VirtualCoupler:
         state : CouplerState
         on_device, on_tool : Wrench
             To be held on the handle and on the tool.
-
-        Raises
-        ------
-        StandoffError
-            A `dt` that is not above zero, a `now` that is not finite, or an invalid state: a fault
-            of the calling program, raised before anything is changed.
         """
         _check_state(state)
         seconds = positive(dt, "dt")

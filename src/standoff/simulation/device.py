@@ -50,6 +50,8 @@ class DeviceReading(NamedTuple):
 class DeviceLimits:
     """What a device can do.
 
+    Raises StandoffError: a number below zero, or not finite; the workspace may be infinite.
+
     Parameters
     ----------
     max_force : float
@@ -58,11 +60,6 @@ class DeviceLimits:
         Greatest torque [N m]; 0 for a device without one.
     workspace : float
         Radius of the ball about its home position that the handle can reach [length].
-
-    Raises
-    ------
-    StandoffError
-        A number below zero, or not finite; the workspace may be infinite.
     """
 
     max_force: float

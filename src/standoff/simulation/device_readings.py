@@ -27,6 +27,8 @@ MOST_MADE: Final = 1_000_000
 class DeviceReadings(KeepsReadOnly):
     """What a device said, reading by reading: recorded, or written by hand.
 
+    Raises StandoffTypeError: not iterable. Raises StandoffError: no reading at all.
+
     Parameters
     ----------
     readings : iterable of DeviceReading or None
@@ -37,13 +39,6 @@ class DeviceReadings(KeepsReadOnly):
     ----------
     rows : (n, m) array
         Laid out in ``standoff.kernels.dynamics.coupler_arrays``.
-
-    Raises
-    ------
-    StandoffTypeError
-        Not iterable.
-    StandoffError
-        No reading at all.
     """
 
     rows: Array
@@ -75,6 +70,9 @@ class DeviceReadings(KeepsReadOnly):
     ) -> DeviceReadings:
         """Return the readings of a handle that follows a path, from time 0 on.
 
+        Raises StandoffError: a count below one or beyond a million, a period that is not above
+        zero. Raises StandoffTypeError: not a path.
+
         Parameters
         ----------
         path : Path or function of the time
@@ -82,13 +80,6 @@ class DeviceReadings(KeepsReadOnly):
         count : int
         period : float
             From reading to reading [s].
-
-        Raises
-        ------
-        StandoffError
-            A count below one or beyond a million, a period that is not above zero.
-        StandoffTypeError
-            Not a path.
         """
         found: Any = path_of(path)
         seconds = positive(period, "period")

@@ -25,6 +25,9 @@ KINDS: Final = get_args(Disturbance)
 class Disturbances:
     """What a simulated device does to its readings, the same at every run.
 
+    Raises StandoffError: not a mapping, an unknown word, a number of a reading below zero, or what
+    is not a probability.
+
     Parameters
     ----------
     script : mapping from int to str
@@ -38,12 +41,6 @@ class Disturbances:
         Probability of each reading to come as one of "nan", "inf", "shape", "order", "invalid".
     seed : int
         Seed of both.
-
-    Raises
-    ------
-    StandoffError
-        Not a mapping, an unknown word, a number of a reading below zero, or what is not a
-        probability.
     """
 
     script: Mapping[int, str] = field(default_factory=dict)

@@ -19,6 +19,9 @@ from standoff.simulation.six_axes import rotation_error
 class Encoder:
     """How a simulated device measures.
 
+    Raises StandoffError: a number that is not finite, or below zero; `velocities` that is neither
+    True nor False.
+
     Parameters
     ----------
     position_step : float
@@ -29,11 +32,6 @@ class Encoder:
         Whether readings have a twist, by differences of what was measured; otherwise None.
     velocity_time_constant : float
         Of the first-order filter (backward Euler) behind the differences [s].
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite, or below zero; `velocities` that is neither True nor False.
     """
 
     position_step: float = 0.0

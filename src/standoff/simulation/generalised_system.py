@@ -26,6 +26,9 @@ Array = NDArray[np.float64]
 class GeneralisedSystem(KeepsReadOnly):
     """Bodies that are placed by coordinates θ, with the equations of motion that you give.
 
+    Raises StandoffTypeError: something that is not a body, a contact or a function. Raises
+    StandoffError: a pair that does not exist, is given twice, or cannot be one.
+
     Parameters
     ----------
     bodies : sequence of Body
@@ -46,13 +49,6 @@ class GeneralisedSystem(KeepsReadOnly):
         Numbers of the bodies that are tracked and may touch.
     drive : callable, optional
         (t, θ, θ') to the generalised forces F, (n,); none if not given.
-
-    Raises
-    ------
-    StandoffTypeError
-        Something that is not a body, a contact or a function.
-    StandoffError
-        A pair that does not exist, is given twice, or cannot be one.
     """
 
     bodies: Sequence[Body]
@@ -101,6 +97,9 @@ class GeneralisedSystem(KeepsReadOnly):
     ) -> Array:
         """Return θ'' = M⁻¹ (F − C − N + Σ Jᵀ w), including the wrenches w on the bodies.
 
+        Raises StandoffError: M that is singular, not symmetric, or not positive definite, with θ;
+        wrong shapes.
+
         Parameters
         ----------
         t : float
@@ -108,11 +107,6 @@ class GeneralisedSystem(KeepsReadOnly):
             Coordinates and their rates.
         wrenches : sequence of (6,) arrays, optional
             On each body, such as its contacts': force and torque about its origin, world axes.
-
-        Raises
-        ------
-        StandoffError
-            M that is singular, not symmetric, or not positive definite, with θ; wrong shapes.
         """
         n = len(theta)
         forces = -finite(self.coriolis(theta, rate), "coriolis", (n,))

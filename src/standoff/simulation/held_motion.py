@@ -17,17 +17,14 @@ STIFFEST: Final = 1e12
 class HeldMotion:
     """``m x'' + d x' + k x = f(t)`` over one period, with f linear in time: exact.
 
+    Raises StandoffError: a mass too small to be followed.
+
     Parameters
     ----------
     mass, damping, stiffness : float
         m above zero.
     period : float
         [s]
-
-    Raises
-    ------
-    StandoffError
-        A mass too small to be followed.
     """
 
     def __init__(self, mass: float, damping: float, stiffness: float, period: float) -> None:

@@ -14,6 +14,8 @@ class HumanArm:
     Second order, the same in all directions. Spring and damper act between the handle and the pose
     that the hand tries to reach.
 
+    Raises StandoffError: a number that is not finite, or below zero.
+
     Parameters
     ----------
     mass : float
@@ -28,11 +30,6 @@ class HumanArm:
         [N m s/rad]
     rotational_stiffness : float
         [N m/rad]
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite, or below zero.
     """
 
     mass: float

@@ -65,10 +65,7 @@ class LoadedBodies:
     def load(self, t: float) -> Array:
         """Track the pairs where the bodies are now, and return the loads.
 
-        Raises
-        ------
-        StandoffError
-            A pose or twist that is not finite.
+        Raises StandoffError: a pose or twist that is not finite.
         """
         self.data[K.S_TIME] = t
         why = entries.load_system(self._packed, self.data, self.loads, self.account)

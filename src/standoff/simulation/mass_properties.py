@@ -51,6 +51,9 @@ EXACT = MassErrors()
 class MassProperties(KeepsReadOnly):
     """Mass, centre of mass and inertia of a rigid body.
 
+    Raises StandoffError: a wrong shape, a number that is not finite, a mass that is not positive,
+    an inertia that no body can have.
+
     Parameters
     ----------
     mass : float
@@ -65,12 +68,6 @@ class MassProperties(KeepsReadOnly):
         Length cubed; None where the properties were given.
     error : MassErrors
         Bounds on their errors.
-
-    Raises
-    ------
-    StandoffError
-        A wrong shape, a number that is not finite, a mass that is not positive, an inertia that
-        no body can have.
     """
 
     mass: float
@@ -91,6 +88,8 @@ class MassProperties(KeepsReadOnly):
         """Mass properties that are known: for a body that is not solid, or whose density is not
         uniform.
 
+        Raises StandoffError as the class.
+
         Parameters
         ----------
         mass : float
@@ -104,11 +103,6 @@ class MassProperties(KeepsReadOnly):
         -------
         MassProperties
             Without a volume, its error bounds zero.
-
-        Raises
-        ------
-        StandoffError
-            As the class.
         """
         return MassProperties(mass, centre, inertia)
 
@@ -161,6 +155,9 @@ def mass_properties(
     Integrals over the body's exact boundary by the divergence theorem, its swept radius included,
     with bounds of their errors: no mesh.
 
+    Raises StandoffTypeError: not a body. Raises StandoffError: a body without volume or without
+    bounds; a density or tolerance that is not positive.
+
     Parameters
     ----------
     body : Body or Solid
@@ -174,13 +171,6 @@ def mass_properties(
     Returns
     -------
     MassProperties
-
-    Raises
-    ------
-    StandoffTypeError
-        Not a body.
-    StandoffError
-        A body without volume or without bounds; a density or tolerance that is not positive.
     """
     if not isinstance(body, Body | SolidModel):
         raise StandoffTypeError(f"body is {shown(body)}: give a Body or a Solid.", "body", body)

@@ -69,6 +69,11 @@ class Going(NamedTuple):
 class Operator(KeepsReadOnly):
     """Bodies, contacts and tracked parameters as one state, advanced by one method.
 
+    Raises StandoffTypeError: no system. Raises StandoffError: a step that is not positive; an
+    unknown method; a gain beyond the method's limit; a contact or a coupler too stiff for the step,
+    with the largest stable stiffness; a slip speed too small for it; a step that does not fit into
+    the period of a coupler's device.
+
     Parameters
     ----------
     system : System
@@ -95,15 +100,6 @@ class Operator(KeepsReadOnly):
     ticks_a_reading : int
         Ticks from one reading of a coupler's device to the next: its period over the step; 1 where
         there is none.
-
-    Raises
-    ------
-    StandoffTypeError
-        No system.
-    StandoffError
-        A step that is not positive; an unknown method; a gain beyond the method's limit; a contact
-        or a coupler too stiff for the step, with the largest stable stiffness; a slip speed too
-        small for it; a step that does not fit into the period of a coupler's device.
     """
 
     def __init__(
@@ -173,17 +169,15 @@ class Operator(KeepsReadOnly):
     def start(self, time: float = 0.0, *, allow_overlap: bool = False) -> SystemState:
         """Return the state of the bodies' own poses and twists, with certified witness points.
 
+        Raises StandoffError: bodies overlap, by a depth that the message gives, and that is not
+        allowed.
+
         Parameters
         ----------
         time : float
             On the clock of the driven bodies' paths [time].
         allow_overlap : bool
             Start even if bodies overlap: they will push each other apart.
-
-        Raises
-        ------
-        StandoffError
-            Bodies overlap, by a depth that the message gives, and that is not allowed.
         """
         t = number(time, "time")
         overlap = yes_or_no(allow_overlap, "allow_overlap")
@@ -200,6 +194,10 @@ class Operator(KeepsReadOnly):
         contacts: bool = False,
     ) -> SystemRun:
         """Advance a state by many ticks, in compiled loops.
+
+        Raises StandoffTypeError: not a state; not a device; neither True nor False. Raises
+        StandoffError: the motion left all bounds, at a tick that the message gives: a step too long
+        for it; too few readings; a device without a coupler.
 
         Parameters
         ----------
@@ -218,14 +216,6 @@ class Operator(KeepsReadOnly):
             Called now and then with the ticks done and the ticks in all.
         contacts : bool
             Keep all places and spots of each record, for `SystemRun.contacts` and for ``so.view``.
-
-        Raises
-        ------
-        StandoffTypeError
-            Not a state; not a device; neither True nor False.
-        StandoffError
-            The motion left all bounds, at a tick that the message gives: a step too long for it;
-            too few readings; a device without a coupler.
         """
         self._check_state(state)
         ticks, every = self._counts(ticks, every)
@@ -269,16 +259,13 @@ class Operator(KeepsReadOnly):
         """Return all contacts of a state: pairs that touch or nearly do, of convex bodies and
         solids, with all their places and what each spot pushes.
 
+        Raises StandoffTypeError, StandoffError: not a state; a state of another system.
+
         Parameters
         ----------
         state : SystemState
             Of this system. Of one that keeps no places, a start or a record, they are found as a
             run that begins with it finds them.
-
-        Raises
-        ------
-        StandoffTypeError, StandoffError
-            Not a state; a state of another system.
         """
         self._check_state(state)
         told, data = Told(), self.room_for(state)
@@ -358,17 +345,14 @@ class Operator(KeepsReadOnly):
     def step(self, state: SystemState, reading: DeviceReading | None = None) -> SystemState:
         """Advance a state by one tick; with a coupler, by those of one reading of its device.
 
+        Raises StandoffTypeError, StandoffError as `run`.
+
         Parameters
         ----------
         state : SystemState
         reading : DeviceReading, optional
             Of the coupler's device; None if nothing came: then an engaged coupler lets go. The
             wrench to be held on the handle is `state.coupler.wrench_on_device` of the new state.
-
-        Raises
-        ------
-        StandoffTypeError, StandoffError
-            As `run`.
         """
         given = None if reading is None else DeviceReadings([reading])
         ticks = self.ticks_a_reading

@@ -118,10 +118,7 @@ def _pair_rows(system: System) -> tuple[list[int], list[float]]:
 def ticks_a_reading(system: System, dt: float) -> int:
     """Ticks from a reading of a coupler's device to the next; 1 if its period is not known.
 
-    Raises
-    ------
-    StandoffError
-        The device's period is not a whole number of steps.
+    Raises StandoffError: the device's period is not a whole number of steps.
     """
     if system.coupler is None or system.coupler.sampling is None:
         return 1

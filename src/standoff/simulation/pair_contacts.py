@@ -163,10 +163,7 @@ class Told:
     def take(self, state: SystemState) -> None:
         """Keep the spots that were told of a state, and the places that it keeps.
 
-        Raises
-        ------
-        StandoffError
-            There are too many of them.
+        Raises StandoffError: there are too many of them.
         """
         count, self._asked = int(self.room[K.TOLD]), False
         spots = self.room[K.TOLD_HEADER : K.TOLD_HEADER + K.N_TOLD * count]

@@ -29,12 +29,8 @@ BESIDE = PredictorCorrector(depth="local")
 def laws_beside(system: System, given: Laws) -> tuple[Law, ...]:
     """The law of each pair whose tracker stands beside the operator.
 
-    Raises
-    ------
-    StandoffTypeError
-        Not a law.
-    StandoffError
-        A law for a pair that the system does not have.
+    Raises StandoffTypeError: not a law. Raises StandoffError: a law for a pair that the system does
+    not have.
     """
     if not isinstance(given, Mapping):
         return (BESIDE if given is None else checked_law(given),) * len(system.pairs)

@@ -56,6 +56,9 @@ LONGEST_DELAY: Final = 20
 class Sampling:
     """What a coupler's passivity depends on in the device and in the loop that drives it.
 
+    Raises StandoffError: a period that is not above zero, a damping or time constant below zero, or
+    a delay that is not a whole number from 0 to 20.
+
     Parameters
     ----------
     period : float
@@ -68,12 +71,6 @@ class Sampling:
         Whole periods from a reading to the force that answers it, 0 to 20.
     velocity_time_constant : float
         Of the first-order filter (backward Euler) behind the velocity's differences [s].
-
-    Raises
-    ------
-    StandoffError
-        A period that is not above zero, a damping or time constant below zero, or a delay that
-        is not a whole number from 0 to 20.
     """
 
     period: float
@@ -95,6 +92,8 @@ class Sampling:
 def required_damping(stiffness: float, damping: float, sampling: Sampling) -> float:
     """Return the device's damping that a sampled spring and damper needs to be passive.
 
+    Raises StandoffError: a number that is not finite, a stiffness below zero, or not a `Sampling`.
+
     Parameters
     ----------
     stiffness : float
@@ -107,11 +106,6 @@ def required_damping(stiffness: float, damping: float, sampling: Sampling) -> fl
     -------
     float
         The least b [N s/m], or [N m s/rad]: the greatest right-hand side over all frequencies.
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite, a stiffness below zero, or not a `Sampling`.
     """
     k = not_negative(stiffness, "stiffness")
     _check_sampling(sampling)
@@ -128,6 +122,9 @@ def required_damping(stiffness: float, damping: float, sampling: Sampling) -> fl
 def largest_stiffness(damping: float, device_damping: float, sampling: Sampling) -> float:
     """Return the largest stiffness that stays passive with a damping.
 
+    Raises StandoffError: a number that is not finite, a device's damping below zero, or not a
+    `Sampling`.
+
     Parameters
     ----------
     damping : float
@@ -141,11 +138,6 @@ def largest_stiffness(damping: float, device_damping: float, sampling: Sampling)
     -------
     float
         K [N/m], or [N m/rad]; -inf if no stiffness is passive with so much damping.
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite, a device's damping below zero, or not a `Sampling`.
     """
     b = number(damping, "damping")
     own = not_negative(device_damping, "device_damping")
@@ -174,6 +166,9 @@ def required_damping_of(
 
     For laws of your own, such as a coupler in series with a simulated tool.
 
+    Raises StandoffError: a period that is not above zero, fewer than 8 angles or more than 10⁶, not
+    a function, or one that answers with another shape or with numbers that are not finite.
+
     Parameters
     ----------
     position_to_force : callable
@@ -188,12 +183,6 @@ def required_damping_of(
     -------
     float
         The least b [N s/m]
-
-    Raises
-    ------
-    StandoffError
-        A period that is not above zero, fewer than 8 angles or more than 10⁶, not a function, or
-        one that answers with another shape or with numbers that are not finite.
     """
     seconds = positive(period, "period")
     if not callable(position_to_force):
@@ -231,10 +220,7 @@ def required_damping_of(
 def check_passive(stiffness: float, damping: float, sampling: Sampling, *, of: str) -> None:
     """Refuse a spring and damper that the device's own damping does not keep passive.
 
-    Raises
-    ------
-    PassivityError
-        The message says by how much, and gives the largest stiffness.
+    Raises PassivityError: the message says by how much, and gives the largest stiffness.
     """
     kind, unit, spring = (
         ("rotational_", "N m s/rad", "N m/rad") if of == "rotation" else ("", "N s/m", "N/m")

@@ -49,6 +49,8 @@ class PassivityController:
     rest at the tool. A held damper is passive only up to about the device's own damping, or the
     mass that moves over the tick, so its limit is not a formality.
 
+    Raises StandoffError: a number that is not finite, or below zero.
+
     Parameters
     ----------
     max_damping : float
@@ -61,11 +63,6 @@ class PassivityController:
         At the tool [N m s/rad].
     tolerance : float
         Energy that may be missing before it acts [J].
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite, or below zero.
     """
 
     max_damping: float

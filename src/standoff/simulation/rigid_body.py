@@ -61,6 +61,10 @@ class RigidBody(KeepsReadOnly):
     ) -> RigidBody:
         """Return a body that is moved by the forces on it.
 
+        Raises StandoffTypeError: no body. Raises StandoffError: a body without bounds; both or none
+        of density and mass; a mass that is not positive; a body without volume and no inertia; an
+        inertia that no body can have.
+
         Parameters
         ----------
         body : Body or Solid
@@ -76,14 +80,6 @@ class RigidBody(KeepsReadOnly):
             At the start; the identity if not given.
         twist : Twist or what ``Twist.of`` reads, optional
             At the start; at rest if not given.
-
-        Raises
-        ------
-        StandoffTypeError
-            No body.
-        StandoffError
-            A body without bounds; both or none of density and mass; a mass that is not positive; a
-            body without volume and no inertia; an inertia that no body can have.
         """
         check_spatial(body)
         if not body.bounded:
@@ -119,19 +115,14 @@ class RigidBody(KeepsReadOnly):
     def fixed(body: Body | SolidModel, pose: PoseLike | None = None) -> RigidBody:
         """Return a body that never moves.
 
+        Raises StandoffTypeError: no body. Raises StandoffError: a planar body; no pose.
+
         Parameters
         ----------
         body : Body or Solid
             Of any kind but planar; a half-space is allowed.
         pose : Pose or what ``Pose.of`` reads, optional
             The identity if not given.
-
-        Raises
-        ------
-        StandoffTypeError
-            No body.
-        StandoffError
-            A planar body; no pose.
         """
         check_spatial(body)
         at = Pose.identity() if pose is None else Pose.of(pose)
@@ -141,18 +132,13 @@ class RigidBody(KeepsReadOnly):
     def driven(body: Body | SolidModel, path: Any) -> RigidBody:
         """Return a body that follows a path whatever it meets.
 
+        Raises StandoffTypeError: no body; no path. Raises StandoffError: a planar body.
+
         Parameters
         ----------
         body : Body or Solid
         path : path
             Of ``standoff.motion``, or anything with ``pose(t)`` and ``twist(t)``.
-
-        Raises
-        ------
-        StandoffTypeError
-            No body; no path.
-        StandoffError
-            A planar body.
         """
         check_spatial(body)
         try:

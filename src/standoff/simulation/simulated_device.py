@@ -43,6 +43,8 @@ SQUARED_UP: Final = 1024
 class Mechanism:
     """What a device's handle feels like with its motors off, the same in all directions.
 
+    Raises StandoffError: a number that is not finite, or below zero; a mass or inertia of zero.
+
     Parameters
     ----------
     mass : float
@@ -53,11 +55,6 @@ class Mechanism:
         Above zero [kg m²].
     rotational_damping : float
         [N m s/rad]
-
-    Raises
-    ------
-    StandoffError
-        A number that is not finite, or below zero; a mass or inertia of zero.
     """
 
     mass: float
@@ -75,17 +72,14 @@ class Mechanism:
 class ScriptedHand:
     """A hand that holds the handle and tries to follow a path.
 
+    Raises StandoffTypeError: not a path, or no arm.
+
     Parameters
     ----------
     path : Path or function of the time
         Where the hand tries to have the handle, from time 0 to the last reading.
     arm : HumanArm
         What holds it there.
-
-    Raises
-    ------
-    StandoffTypeError
-        Not a path, or no arm.
     """
 
     path: Path | Callable[[float], PoseLike]
@@ -104,6 +98,10 @@ class SimulatedDevice:
     `read` returns the sample at time 0. Between samples the motion is exact for the held wrench and
     a path that is straight over a period; a rotation is taken as its vector since the last sample,
     exact about a fixed axis.
+
+    Raises StandoffError: a period that is not above zero, a delay that is not a whole number from 0
+    to 20, no pose; a mass too small for damping, stiffness and period. Raises StandoffTypeError: a
+    part of the wrong kind.
 
     Parameters
     ----------
@@ -130,14 +128,6 @@ class SimulatedDevice:
         What the motors hold now.
     cut : int
         Wrenches that were beyond the limits.
-
-    Raises
-    ------
-    StandoffError
-        A period that is not above zero, a delay that is not a whole number from 0 to 20, no pose;
-        a mass too small for damping, stiffness and period.
-    StandoffTypeError
-        A part of the wrong kind.
     """
 
     def __init__(
@@ -239,15 +229,12 @@ class SimulatedDevice:
     def read(self) -> DeviceReading | None:
         """Hold the wrench for one period, and return the sample that comes at its end.
 
+        Raises DeviceError if the device is not open, or gone.
+
         Returns
         -------
         DeviceReading or None
             Whatever the `Disturbances` make of it.
-
-        Raises
-        ------
-        DeviceError
-            If the device is not open, or gone.
         """
         self._check_open()
         self._waiting.append(self._next_sample())
@@ -266,12 +253,8 @@ class SimulatedDevice:
     def write(self, wrench: Wrench) -> None:
         """Hold a wrench on the handle until the next.
 
-        Raises
-        ------
-        DeviceError
-            If the device is not open.
-        StandoffTypeError
-            If that is not a `Wrench`.
+        Raises DeviceError if the device is not open. Raises StandoffTypeError if that is not a
+        `Wrench`.
         """
         self._check_open()
         if not isinstance(wrench, Wrench):

@@ -52,10 +52,7 @@ def flats_of(body: Body | SolidModel) -> FlatParts:
 def contact_model(body: Body | SolidModel) -> SolidModel:
     """A body as its contacts with solids see it.
 
-    Raises
-    ------
-    StandoffError
-        One that is not bounded, or a point.
+    Raises StandoffError: one that is not bounded, or a point.
     """
     model = as_model(body)
     if isinstance(body, Body) and not body.bounded:

@@ -82,10 +82,7 @@ class SolidContact(NamedTuple):
 def solid_contact(kept: Array, pose: Pose) -> SolidContact:
     """What is kept of a pair of solids, with A at a pose in the world.
 
-    Raises
-    ------
-    StandoffError
-        Nothing is kept yet.
+    Raises StandoffError: nothing is kept yet.
     """
     places = tuple(place_of(row) for row in place_rows(kept, pose))
     R, p = pose.rotation, pose.translation
@@ -107,10 +104,7 @@ def place_of(row: Array) -> ContactPlace:
 def place_rows(kept: Array, pose: Pose) -> Array:
     """(n, PLACE_REALS) places that are kept of a pair of solids, with A at a pose in the world.
 
-    Raises
-    ------
-    StandoffError
-        Nothing is kept yet.
+    Raises StandoffError: nothing is kept yet.
     """
     if not len(kept) or kept[P.F_MADE] == 0.0:
         raise StandoffError(

@@ -44,6 +44,10 @@ FLAT_SPRINGS = 4.0
 class System(KeepsReadOnly):
     """Bodies that are moved by gravity and by each other.
 
+    Raises StandoffTypeError: something that is not a RigidBody or not a HuntCrossley. Raises
+    StandoffError: no body that is free; a pair that does not exist, is given twice, or cannot move;
+    two half-spaces; a coupler without its tool, or a tool that is not free.
+
     Parameters
     ----------
     bodies : sequence of RigidBody
@@ -70,14 +74,6 @@ class System(KeepsReadOnly):
     tool : int or None
     key : str
         Of this system and of its copies and pickles, whose states it takes; no other has it.
-
-    Raises
-    ------
-    StandoffTypeError
-        Something that is not a RigidBody or not a HuntCrossley.
-    StandoffError
-        No body that is free; a pair that does not exist, is given twice, or cannot move; two
-        half-spaces; a coupler without its tool, or a tool that is not free.
     """
 
     bodies: tuple[RigidBody, ...]

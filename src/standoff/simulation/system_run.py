@@ -59,10 +59,7 @@ class SystemRun(KeepsReadOnly):
         """Return a state of the record, from which a run can continue; rows below 0 count from the
         end.
 
-        Raises
-        ------
-        StandoffError
-            No row of the record.
+        Raises StandoffError: no row of the record.
         """
         data = self.states[self._checked(row)].copy()
         data.flags.writeable = False
@@ -116,10 +113,7 @@ class SystemRun(KeepsReadOnly):
         """Return all contacts of a record: pairs that touch or nearly do, with all their places and
         what each spot pushes. Rows below 0 count from the end.
 
-        Raises
-        ------
-        StandoffError
-            A run that was not asked for them; no row of the record.
+        Raises StandoffError: a run that was not asked for them; no row of the record.
         """
         if self.told is None:
             raise StandoffError(

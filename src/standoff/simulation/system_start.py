@@ -28,10 +28,8 @@ def started(
 ) -> SystemState:
     """The state at a time on the clock of the driven bodies' paths.
 
-    Raises
-    ------
-    StandoffError
-        Bodies overlap, by a depth that the message gives, and that is not allowed.
+    Raises StandoffError: bodies overlap, by a depth that the message gives, and that is not
+    allowed.
     """
     header = np.zeros(K.STATE_HEADER)
     header[K.S_TIME] = time

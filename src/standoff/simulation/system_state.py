@@ -116,10 +116,8 @@ class SystemState(KeepsReadOnly):
     def contact(self, pair: int) -> SolidContact:
         """Return the places at which a pair with a solid touches, and what pushes there.
 
-        Raises
-        ------
-        StandoffError
-            A pair of convex bodies; a state that keeps no places: one of a record, or a start.
+        Raises StandoffError: a pair of convex bodies; a state that keeps no places: one of a
+        record, or a start.
         """
         if not self.system.of_solids[pair]:
             raise StandoffError(
@@ -173,10 +171,7 @@ class SystemState(KeepsReadOnly):
     def engage(self) -> SystemState:
         """Return the same state with its coupler engaged, its wrench growing from zero.
 
-        Raises
-        ------
-        StandoffError
-            The system has no coupler.
+        Raises StandoffError: the system has no coupler.
         """
         own, state = self._coupled()
         return self._with(own, own.engage(state))
@@ -184,10 +179,7 @@ class SystemState(KeepsReadOnly):
     def disengage(self) -> SystemState:
         """Return the same state with its coupler at rest until it is engaged again.
 
-        Raises
-        ------
-        StandoffError
-            The system has no coupler.
+        Raises StandoffError: the system has no coupler.
         """
         own, state = self._coupled()
         return self._with(own, own.disengage(state))

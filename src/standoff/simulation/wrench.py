@@ -17,6 +17,8 @@ class Wrench(KeepsReadOnly):
 
     The power that it gives a body with the `Twist` (v, ω) is ``force @ v + torque @ omega``.
 
+    Raises ValueError if a component is not finite or a shape is wrong.
+
     Parameters
     ----------
     force : array_like, shape (3,)
@@ -28,11 +30,6 @@ class Wrench(KeepsReadOnly):
     ----------
     force, torque : ndarray, shape (3,)
         Read-only, float64.
-
-    Raises
-    ------
-    ValueError
-        If a component is not finite or a shape is wrong.
     """
 
     force: FloatArray

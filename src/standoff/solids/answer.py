@@ -302,10 +302,7 @@ class SolidProximity(KeepsReadOnly, PlainData):
 
         At a tie it is that of the first pair, one-sided; see `smoothness`.
 
-        Raises
-        ------
-        StandoffError
-            Where it is not defined.
+        Raises StandoffError where it is not defined.
         """
         if self.smoothness in (Smoothness.PARTIAL, Smoothness.UNDEFINED):
             raise StandoffError(

@@ -43,21 +43,16 @@ WITHOUT_RESIDUAL = 1
 def save_boundary(path: str | os.PathLike[str], boundary: Boundary | Body) -> None:
     """Write a boundary, or a convex body, to a file; whole or not at all.
 
+    Raises StandoffTypeError: neither a boundary nor a body. Raises StandoffError: a planar body,
+    one without faces, or a part that is made of a formula. Raises OSError if the file cannot be
+    written.
+
     Parameters
     ----------
     path : str or path
         New, or replaced.
     boundary : Boundary or Body
         Spatial, with faces. Lengths are written as they are.
-
-    Raises
-    ------
-    StandoffTypeError
-        Neither a boundary nor a body.
-    StandoffError
-        A planar body, one without faces, or a part that is made of a formula.
-    OSError
-        If the file cannot be written.
     """
     target = file_name(path)
     if not isinstance(boundary, Boundary | Body):
@@ -136,6 +131,9 @@ def open_boundary(path: str | os.PathLike[str]) -> Boundary | Body:
     to miss each other by is kept; a file of version 1 lacks it, and a boundary's slack then is the
     tolerance within which its parts were joined.
 
+    Raises StandoffError: not such a file, one of another version, a damaged one, or parts that no
+    longer close. Raises OSError if the file cannot be read.
+
     Parameters
     ----------
     path : str or path
@@ -143,13 +141,6 @@ def open_boundary(path: str | os.PathLike[str]) -> Boundary | Body:
     Returns
     -------
     Boundary or Body
-
-    Raises
-    ------
-    StandoffError
-        Not such a file, one of another version, a damaged one, or parts that no longer close.
-    OSError
-        If the file cannot be read.
     """
     file = Path(path)
     try:

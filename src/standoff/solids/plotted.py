@@ -21,6 +21,10 @@ class Plotted:
         """Draw the solid: one in space from two opposite sides, with its convex, reflex and smooth
         edges told apart, a planar one with such vertices.
 
+        Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra.
+        Raises TypeError if `path` is neither a string nor a Path. Raises ValueError if it is empty
+        or has a different file extension. Raises OSError if the file cannot be written.
+
         Parameters
         ----------
         path : str or path, optional
@@ -31,17 +35,6 @@ class Plotted:
         Returns
         -------
         matplotlib.figure.Figure
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        TypeError
-            If `path` is neither a string nor a Path.
-        ValueError
-            If it is empty or has a different file extension.
-        OSError
-            If the file cannot be written.
         """
         from standoff.bodies.drawing.files import drawn
 
@@ -57,6 +50,8 @@ class Plotted:
     ) -> Figure:
         """The picture that ``so.plot`` makes of two solids, of which this is one.
 
+        Raises TypeError, StandoffError: something that is no such solid, or no answer.
+
         Parameters
         ----------
         a, b : Solid, PlanarSolid, Boundary or Body
@@ -70,11 +65,6 @@ class Plotted:
         Returns
         -------
         matplotlib.figure.Figure
-
-        Raises
-        ------
-        TypeError, StandoffError
-            Something that is no such solid, or no answer.
         """
         ...
 
@@ -82,10 +72,7 @@ class Plotted:
 def checked_answer(answer: Any) -> SolidProximity:
     """An answer about two solids.
 
-    Raises
-    ------
-    TypeError
-        Something else.
+    Raises TypeError: something else.
     """
     if isinstance(answer, SolidProximity):
         return answer

@@ -29,6 +29,9 @@ def distance(  # noqa: PLR0913 - all but four are keywords with defaults
 ) -> SolidProximity:
     """The proven distance of two solids at two poses: cold, global.
 
+    Raises TypeError: neither a solid nor a body. Raises ValueError: no pose, one out of the plane,
+    a number that is not positive, or `patch` alone.
+
     Parameters
     ----------
     a, b : Solid, PlanarSolid, Boundary or Body
@@ -54,13 +57,6 @@ def distance(  # noqa: PLR0913 - all but four are keywords with defaults
     Returns
     -------
     SolidProximity
-
-    Raises
-    ------
-    TypeError
-        Neither a solid nor a body.
-    ValueError
-        No pose, one out of the plane, a number that is not positive, or `patch` alone.
     """
     asked = Asked(
         None if within is None else positive(within, "within"),

@@ -43,10 +43,7 @@ BY_EXPONENTS = {kind.__name__: kind for kind in (SuperellipsoidPole, Superellips
 def stored_surface(surface: Surface) -> Facts:
     """Return a surface as plain data.
 
-    Raises
-    ------
-    StandoffError
-        A surface made of a formula, or of a kind of the user's own.
+    Raises StandoffError: a surface made of a formula, or of a kind of the user's own.
     """
     name = type(surface).__name__
     placed = {"linear": surface.linear.tolist(), "shift": surface.shift.tolist()}
@@ -79,10 +76,7 @@ def stored_surface(surface: Surface) -> Facts:
 def made_surface(facts: Facts) -> Surface:
     """Make a surface again.
 
-    Raises
-    ------
-    StandoffError
-        An unknown kind, or numbers that its class refuses.
+    Raises StandoffError: an unknown kind, or numbers that its class refuses.
     """
     kind = facts["kind"]
     if kind == "NurbsSurface":

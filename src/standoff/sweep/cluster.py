@@ -24,6 +24,10 @@ def made_on_cluster(
 ) -> Iterator[int]:
     """Make shards on a cluster; yields each one's number when it is there.
 
+    Raises ModuleNotFoundError if Dask is not installed. Raises StandoffError if a worker cannot
+    read the job, or has another job or library. Raises OSError if the scheduler cannot be reached,
+    or is lost.
+
     Parameters
     ----------
     work : Job or Proof
@@ -33,15 +37,6 @@ def made_on_cluster(
     missing : sequence of int
     address : str
         Of the scheduler, such as ``tcp://10.0.0.5:8786``.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If Dask is not installed.
-    StandoffError
-        If a worker cannot read the job, or has another job or library.
-    OSError
-        If the scheduler cannot be reached, or is lost.
     """
     with of_extra("distributed", "cluster"):
         from distributed import Client
@@ -82,10 +77,7 @@ def _texts(
 def shard_text(token: Token, code_digest: str, k: int) -> tuple[int, str]:
     """Return a shard's number and the text of its file, computed where this is called.
 
-    Raises
-    ------
-    StandoffError
-        If the job or the library here is another one.
+    Raises StandoffError if the job or the library here is another one.
     """
     if digest_of(code_facts()) != code_digest:
         raise StandoffError(

@@ -48,16 +48,13 @@ class Estimate(NamedTuple):
 def estimated(job: Job, workers: int = 1) -> Estimate:
     """Compute some thousand rows, and tell what all of them will take; writes nothing.
 
+    Raises TypeError, ValueError: no job, or a number of workers that is not positive.
+
     Parameters
     ----------
     job : Job
     workers : int
         As of `run_sweep`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        No job, or a number of workers that is not positive.
     """
     check_job(job)
     whole_number(workers, "workers")

@@ -44,10 +44,7 @@ def indented(facts: Mapping[str, Any]) -> str:
 def put_text(file: Path, text: str) -> None:
     """Write a file whole, or not at all.
 
-    Raises
-    ------
-    OSError
-        If it cannot be written, as on a full disk.
+    Raises OSError if it cannot be written, as on a full disk.
     """
     write_whole({file: lambda stream: stream.write(text.encode("utf-8"))})
 
@@ -70,12 +67,8 @@ def manifest_of(work: Work) -> dict[str, Any]:
 def locked(folder: Path) -> Iterator[None]:
     """Hold a folder while a sweep runs in it; the lock ends with the process, however that ends.
 
-    Raises
-    ------
-    FolderError
-        If another process holds it.
-    OSError
-        If the lock's file cannot be made.
+    Raises FolderError if another process holds it. Raises OSError if the lock's file cannot be
+    made.
     """
     try:
         import fcntl
@@ -105,9 +98,7 @@ def locked(folder: Path) -> Iterator[None]:
 def refuse_others(folder: Path) -> None:
     """Refuse a folder that holds files and no sweep.
 
-    Raises
-    ------
-    FolderError
+    Raises FolderError.
     """
     if (folder / MANIFEST).exists():
         return
@@ -126,12 +117,8 @@ def prepare(folder: Path, work: Work) -> None:
 
     Call it while the folder is `locked`.
 
-    Raises
-    ------
-    FolderError
-        If what is there is of another job, or by another version.
-    OSError
-        If it cannot be written.
+    Raises FolderError if what is there is of another job, or by another version. Raises OSError if
+    it cannot be written.
     """
     wanted = manifest_of(work)
     file = folder / MANIFEST
@@ -192,10 +179,7 @@ def _named(file: Path) -> str:
 def make_shard(work: Work, folder: Path, k: int) -> int:
     """Compute a shard and write its file; returns its number.
 
-    Raises
-    ------
-    OSError
-        If it cannot be written, as on a full disk: then it is not there.
+    Raises OSError if it cannot be written, as on a full disk: then it is not there.
     """
     text = text_of_shard(work, digest_of(code_facts()), k, work.computed(k))
     put_text(shard_file(folder, k), text)
@@ -205,10 +189,7 @@ def make_shard(work: Work, folder: Path, k: int) -> int:
 def kept_shard(work: Work, folder: Path, k: int) -> Found | None:
     """Return what a shard's file holds, None where there is none.
 
-    Raises
-    ------
-    NotThisShard
-        If it is damaged, or of something else.
+    Raises NotThisShard if it is damaged, or of something else.
     """
     try:
         text = shard_file(folder, k).read_bytes()

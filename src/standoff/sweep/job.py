@@ -76,10 +76,7 @@ class Job(Work):
     def pair(self) -> ConvexPair:
         """What is swept, of a job over two convex bodies.
 
-        Raises
-        ------
-        StandoffError
-            If it is over something else.
+        Raises StandoffError if it is over something else.
         """
         if not isinstance(self.subject, ConvexPair):
             raise StandoffError(
@@ -132,10 +129,7 @@ class Job(Work):
     def poses(self, numbers: Array) -> tuple[Array, Array]:
         """Return the world poses of A and B, (n, 4, 4) each, or (1, 4, 4) where none moves it.
 
-        Raises
-        ------
-        StandoffError
-            If the job is of no pair.
+        Raises StandoffError if the job is of no pair.
         """
         return self.pair.poses(self.parameters, numbers)
 
@@ -143,10 +137,7 @@ class Job(Work):
         """Return the distances of rows first .. end - 1 of a pair: of each row the same bits,
         whichever others are computed with it.
 
-        Raises
-        ------
-        StandoffError
-            If the job is of no pair: `answers` is for any.
+        Raises StandoffError if the job is of no pair: `answers` is for any.
         """
         return self.pair.distances(self.parameters, self.numbers(first, end))
 
@@ -210,9 +201,7 @@ class Job(Work):
 def check_job(job: Any) -> None:
     """Refuse what is no job.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if not isinstance(job, Job):
         raise StandoffTypeError(f"job is {shown(job)}: give what load_job returns.", "job", job)

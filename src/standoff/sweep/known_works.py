@@ -19,18 +19,13 @@ _reading = threading.Lock()
 def job_of(file: str, digest: str) -> Job:
     """Return the job of a file, read once.
 
+    Raises SceneError if it cannot be read here. Raises StandoffError if it is another job here.
+
     Parameters
     ----------
     file : str
     digest : str
         What the job's is where the sweep was started.
-
-    Raises
-    ------
-    SceneError
-        If it cannot be read here.
-    StandoffError
-        If it is another job here.
     """
     with _reading:
         job = _jobs.get((file, digest))
@@ -49,10 +44,7 @@ def job_of(file: str, digest: str) -> Job:
 def work_of(token: Token) -> Work:
     """Return the work of a token, its job's file read once.
 
-    Raises
-    ------
-    SceneError, StandoffError
-        As of `job_of`.
+    Raises SceneError, StandoffError as of `job_of`.
     """
     file, digest, clearance = token  # a cluster may send it as a plain tuple
     job = job_of(file, digest)

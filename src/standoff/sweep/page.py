@@ -40,10 +40,7 @@ figcaption { font-size: 0.85rem; }
 def page_of(report: Report) -> str:
     """Return the page.
 
-    Raises
-    ------
-    ModuleNotFoundError
-        If matplotlib is not installed.
+    Raises ModuleNotFoundError if matplotlib is not installed.
     """
     job = report.job
     title = _plain(job.title)

@@ -22,6 +22,8 @@ from standoff.sweep.subjects.world import SceneWorld
 def read_parameters(top: Table, subject: Subject, kind: str) -> tuple[Parameter, ...]:
     """Return a job's parameters.
 
+    Raises SceneError.
+
     Parameters
     ----------
     top : Table
@@ -29,10 +31,6 @@ def read_parameters(top: Table, subject: Subject, kind: str) -> tuple[Parameter,
     subject : Subject
     kind : str
         Of the sampler: some have no range, or no rotations.
-
-    Raises
-    ------
-    SceneError
     """
     tables = top.table("parameters", "[parameters.x]")
     if not tables.names():

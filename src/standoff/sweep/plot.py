@@ -27,10 +27,7 @@ ROOM = 3.0
 def histogram_figure(report: Report) -> Figure:
     """Draw how many rows there are in each bin, on a logarithmic axis: the few worst count.
 
-    Raises
-    ------
-    StandoffError
-        If the job keeps no histogram.
+    Raises StandoffError if the job keeps no histogram.
     """
     job, found = report.job, report.found
     if job.keep.bins is None:

@@ -50,6 +50,10 @@ MOST_BINS = 1_000_000
 def load_job(file: str | os.PathLike[str]) -> Job:
     """Read, check and build a job.
 
+    Raises TypeError if `file` is neither a string nor a path. Raises SceneError if the file or what
+    it names is missing or is not TOML, or anything in them is unknown, missing, of the wrong type,
+    not finite, or does not go together. The message names the file, the key and the fix.
+
     Parameters
     ----------
     file : str or path
@@ -58,15 +62,6 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     Returns
     -------
     Job
-
-    Raises
-    ------
-    TypeError
-        If `file` is neither a string nor a path.
-    SceneError
-        If the file or what it names is missing or is not TOML, or anything in them is unknown,
-        missing, of the wrong type, not finite, or does not go together. The message names the
-        file, the key and the fix.
     """
     path = file_name(os.fspath(file) if isinstance(file, os.PathLike) else file)
     try:

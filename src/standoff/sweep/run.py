@@ -102,6 +102,8 @@ def run_proof(
 ) -> ProofReport:
     """Search a box of parameters part by part, or go on with it, and write the report.
 
+    Raises TypeError, ValueError, FolderError, OSError, ModuleNotFoundError as of `run_sweep`.
+
     Parameters
     ----------
     proof : Proof
@@ -113,11 +115,6 @@ def run_proof(
     Returns
     -------
     ProofReport
-
-    Raises
-    ------
-    TypeError, ValueError, FolderError, OSError, ModuleNotFoundError
-        As of `run_sweep`.
     """
     check_proof(proof)
     with _all_made(proof, folder, workers, cluster, progress, tell) as (where, found):
@@ -160,10 +157,7 @@ def _all_made(
 def merged(work: Work, folder: Path) -> Any:
     """Return what is kept of all rows, from the files of all shards.
 
-    Raises
-    ------
-    StandoffError
-        If one is missing, or is not what was written.
+    Raises StandoffError if one is missing, or is not what was written.
     """
     found = work.nothing()
     for k in range(work.shards):

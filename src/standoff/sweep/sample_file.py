@@ -27,20 +27,15 @@ class SampleFile:
     A Parquet or CSV file has named columns; others than those asked for are passed over. An NPY
     file is an array (n, columns), in their order. NPY and Parquet are read piece by piece.
 
+    Raises StandoffError if the file is of another kind or another shape, or lacks a column. Raises
+    OSError if it cannot be read. Raises ModuleNotFoundError if it is Parquet, and pyarrow is not
+    installed.
+
     Parameters
     ----------
     file : Path
     columns : sequence of str
         The names of a row's numbers.
-
-    Raises
-    ------
-    StandoffError
-        If the file is of another kind or another shape, or lacks a column.
-    OSError
-        If it cannot be read.
-    ModuleNotFoundError
-        If it is Parquet, and pyarrow is not installed.
     """
 
     def __init__(self, file: Path, columns: Sequence[str]) -> None:
@@ -119,10 +114,7 @@ class SampleFile:
     def numbers(self, first: int, end: int) -> Array:
         """Return rows first .. end - 1, shape (end - first, columns).
 
-        Raises
-        ------
-        StandoffError
-            At a number that is missing or not finite.
+        Raises StandoffError: at a number that is missing or not finite.
         """
         if self._ends is None:
             found = np.array(self._array[first:end], dtype=np.float64)

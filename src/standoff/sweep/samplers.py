@@ -104,11 +104,8 @@ class SobolSampler:
     shift: some fifty steps for any k. SciPy's ``fast_forward`` takes k steps, which for the last
     shards of 10⁹ rows is longer than their distances.
 
-    Raises
-    ------
-    StandoffError
-        If SciPy keeps its direction numbers otherwise than this class knows: its points are
-        compared with SciPy's.
+    Raises StandoffError if SciPy keeps its direction numbers otherwise than this class knows: its
+    points are compared with SciPy's.
     """
 
     def __init__(self, rows: int, dimension: int, seed: int, bits: int = SOBOL_BITS) -> None:

@@ -21,11 +21,8 @@ from standoff.tracking.inputs import check_pair
 def shape_parameter(name: str, table: Table, subject: Subject) -> Parameter:
     """Return the parameter of a table with ``shapes``, without its range.
 
-    Raises
-    ------
-    SceneError
-        A subject that is no pair of convex bodies, another body, a body that is read from a file,
-        or what its shape has no number of.
+    Raises SceneError: a subject that is no pair of convex bodies, another body, a body that is read
+    from a file, or what its shape has no number of.
     """
     if not isinstance(subject, ConvexPair):
         raise table.error(
@@ -62,6 +59,8 @@ def with_shapes(
     """Return the subject whose bodies are made for each row; the same one where no parameter
     changes a shape.
 
+    Raises SceneError: ends of ranges that make no body, or none that goes with the other one.
+
     Parameters
     ----------
     top : Table
@@ -70,11 +69,6 @@ def with_shapes(
     parameters : sequence of Parameter
     kind : str
         Of the sampler.
-
-    Raises
-    ------
-    SceneError
-        Ends of ranges that make no body, or none that goes with the other one.
     """
     if not isinstance(subject, ConvexPair) or not any(p.shape for p in parameters):
         return subject

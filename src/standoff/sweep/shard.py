@@ -45,10 +45,7 @@ def text_of_shard(work: Work, code: str, k: int, found: Found) -> str:
 def read_shard(work: Work, code: str, k: int, text: bytes) -> Found:
     """Return what a shard's file holds.
 
-    Raises
-    ------
-    NotThisShard
-        If it is damaged, or is not this shard of this job by this code.
+    Raises NotThisShard if it is damaged, or is not this shard of this job by this code.
     """
     try:
         facts = json.loads(text)

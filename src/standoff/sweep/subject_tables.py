@@ -41,15 +41,12 @@ FIXES = {
 def read_subject(top: Table) -> tuple[Subject, str]:
     """Return what a job sweeps, and a title for it.
 
+    Raises SceneError: a file that is missing or refused; keys that do not go together.
+
     Parameters
     ----------
     top : Table
         The job's.
-
-    Raises
-    ------
-    SceneError
-        A file that is missing or refused; keys that do not go together.
     """
     given = [key for key in KINDS if key in top]
     if not given:

@@ -158,17 +158,15 @@ class Answers(AnswerArrays):
         """The patch of each frame as ``Proximity.patch`` has it, each after that of the frame
         before, in one compiled loop.
 
+        Raises TypeError, ValueError as ``Proximity.patch``, but for a frame without a distance: it
+        has no pairs.
+
         Parameters
         ----------
         gap : float
             By how much the gap along the normal may be wider than the distance, length.
         after : Patch, optional
             That of the frame before the first.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``Proximity.patch``, but for a frame without a distance: it has no pairs.
         """
         from standoff.tracking.contact.patches import N_POSES, patches_of
 

@@ -199,10 +199,7 @@ class Branches(KeepsReadOnly, Generic[S]):
     def joined(self, found: Iterable[tuple[float, S]], reason: Birth, same: Same[S]) -> Branches[S]:
         """With a branch for each value and state that none stands at; the first of equals begins.
 
-        Raises
-        ------
-        ArithmeticError
-            A value that is not a number.
+        Raises ArithmeticError: a value that is not a number.
         """
         branches = self
         for value, state in found:

@@ -59,6 +59,10 @@ def distance(
 ) -> Any:
     """The signed minimum distance of two bodies at two poses: cold, global, certified.
 
+    Raises TypeError: neither a body nor a solid nor a compound. Raises ValueError: no pose; a
+    horizon that is not positive; a planar body with a spatial one or out of its plane; two
+    half-spaces.
+
     Parameters
     ----------
     a, b : Body, Solid, PlanarSolid or Compound
@@ -76,14 +80,6 @@ def distance(
         alone it is a `PairAnswer`, as in a world.
         In penetration ``distance`` is less than 0, the least depth, and ``status`` GLOBAL (or
         LOCAL, where it could not be proven to be the least).
-
-    Raises
-    ------
-    TypeError
-        Neither a body nor a solid nor a compound.
-    ValueError
-        No pose; a horizon that is not positive; a planar body with a spatial one or out of its
-        plane; two half-spaces.
     """
     horizon = None if within is None else positive(within, "within")
     try:

@@ -76,10 +76,7 @@ class Distances(AnswerArrays):
     def bodies(self) -> tuple[Body, Body]:
         """(A, B), where all rows are of the same two.
 
-        Raises
-        ------
-        ValueError
-            They are not.
+        Raises ValueError: they are not.
         """
         if self._of.several:
             raise StandoffError(

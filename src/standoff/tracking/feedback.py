@@ -42,6 +42,8 @@ STABLE = 1.0
 def growth_factor(integrator: str, z: Any) -> Any:
     """R(z): what one step multiplies the solution of y' = (z/h) y by.
 
+    Raises ValueError: unknown integrator, or `z` is not numeric.
+
     Parameters
     ----------
     integrator : str
@@ -52,11 +54,6 @@ def growth_factor(integrator: str, z: Any) -> Any:
     -------
     complex or array of complex
         Of the shape of `z`; real where `z` is.
-
-    Raises
-    ------
-    ValueError
-        Unknown integrator, or `z` is not numeric.
 
     Notes
     -----
@@ -94,6 +91,8 @@ def max_gain(integrator: str, dt: float) -> float:
     The errors obey dPsi/dt = -K Psi, so the limit is that of the integrator on the negative real
     axis: K dt < 2 for Euler, Heun and midpoint, 2.785 for RK4 (docs/laws.md).
 
+    Raises ValueError: unknown integrator, or a step that is not positive and finite.
+
     Parameters
     ----------
     integrator : "euler", "heun", "midpoint" or "rk4"
@@ -104,11 +103,6 @@ def max_gain(integrator: str, dt: float) -> float:
     -------
     float
         K, 1/s; a gain must stay below it.
-
-    Raises
-    ------
-    ValueError
-        Unknown integrator, or a step that is not positive and finite.
     """
     number = I.NAMES.index(choice(integrator, "integrator", I.NAMES))
     return I.STABILITY_LIMITS[number] / positive(dt, "dt")
@@ -189,16 +183,13 @@ class Linear:
 class GainMatrix(KeepsReadOnly):
     """Linear feedback with a separate gain for each error, or a matrix: v = K Psi.
 
+    Raises ValueError: another shape, not finite, or a mode of the error loop that does not decay.
+
     Parameters
     ----------
     gains : array-like, shape (4,) or (4, 4)
         Gains [1/s] of the errors in the order (u, v) of A, (r, s) of B; on an edge or a vertex the
         rows and columns of the parameters that it lacks are deleted.
-
-    Raises
-    ------
-    ValueError
-        Another shape, not finite, or a mode of the error loop that does not decay.
     """
 
     def __init__(self, gains: ArrayLike) -> None:

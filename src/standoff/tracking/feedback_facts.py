@@ -30,10 +30,7 @@ def feedback_facts(feedback: Feedback) -> dict[str, Any]:
 def feedback_of_facts(facts: Any) -> Feedback:
     """Return the feedback that `feedback_facts` turned into data.
 
-    Raises
-    ------
-    ValueError
-        If it is not such data, such as that of a program's own feedback.
+    Raises ValueError if it is not such data, such as that of a program's own feedback.
     """
     if not isinstance(facts, Mapping) or facts.get("kind") not in KINDS:
         raise StandoffError(

@@ -91,10 +91,7 @@ def flat_and_mark(pose: PoseLike) -> tuple[Array, bool]:
 def repair(flat: Array, name: str) -> None:
     """Make the nearest rotation of a flat pose that the kernel has refused, in place.
 
-    Raises
-    ------
-    StandoffError
-        If more than rounding is wrong with it.
+    Raises StandoffError if more than rounding is wrong with it.
     """
     rotation = flat[:9].reshape(3, 3)
     far = not np.abs(flat[9:]).sum() < FARTHEST
@@ -133,10 +130,7 @@ def mend(why: int, motion: Array) -> int:
     """Repair what the kernels have refused of a frame's row of motion, in place, where it is a
     rounded pose; 1, the number of poses repaired.
 
-    Raises
-    ------
-    StandoffError
-        It is something worse.
+    Raises StandoffError: it is something worse.
     """
     flat_a, flat_b = poses_of(motion)
     if why == K.BAD_TWIST:
@@ -160,9 +154,7 @@ def motion_of(pose_a: Any, pose_b: Any, twist_a: Any, twist_b: Any) -> tuple[Arr
 def refuse_twists(twist_a: Array, twist_b: Array) -> NoReturn:
     """Say which of two flat twists is not finite.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     for name, twist in (("twist_a", twist_a), ("twist_b", twist_b)):
         if not np.isfinite(twist).all():

@@ -291,10 +291,7 @@ class Law:
         """Return the law with the defaults that depend on the frame time [s], or on each other,
         filled in.
 
-        Raises
-        ------
-        ValueError
-            A feedback that is not stable at that frame time.
+        Raises ValueError: a feedback that is not stable at that frame time.
         """
         return self
 

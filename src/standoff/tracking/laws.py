@@ -247,10 +247,7 @@ def checked_law(law: Any) -> Law:
 def law_of_facts(facts: Mapping[str, Any]) -> Law:
     """Return the law of plain data that `Law.facts` made.
 
-    Raises
-    ------
-    ValueError
-        What is not such data, for instance a feedback that a program made itself.
+    Raises ValueError: what is not such data, for instance a feedback that a program made itself.
     """
     options = dict(facts)
     name = options.pop("law", None)

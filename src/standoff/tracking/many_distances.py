@@ -42,6 +42,10 @@ def distances(
 ) -> Distances:
     """The signed minimum distances of two bodies, or of n pairs of bodies, at n pairs of poses.
 
+    Raises TypeError: not a body. Raises ValueError: arrays of another shape, or of different
+    lengths; lists of bodies of another length; a number of workers that is not positive; a planar
+    body with a spatial one; two half-spaces.
+
     Parameters
     ----------
     a, b : Body, or list of n bodies
@@ -69,14 +73,6 @@ def distances(
     -----
     RefusedRowsWarning
         More than half of the rows have invalid poses.
-
-    Raises
-    ------
-    TypeError
-        Not a body.
-    ValueError
-        Arrays of another shape, or of different lengths; lists of bodies of another length; a
-        number of workers that is not positive; a planar body with a spatial one; two half-spaces.
     """
     found = answered_rows(a, b, poses_a, poses_b, warm=warm, workers=workers, within=within)
     if found.errors:

@@ -71,10 +71,7 @@ class TrackerStates(KeepsReadOnly):
     def of(cls, states: Sequence[TrackerState]) -> TrackerStates:
         """Put states of one tracker together.
 
-        Raises
-        ------
-        TypeError, ValueError
-            Something that is no state; none; states of different bodies.
+        Raises TypeError, ValueError: something that is no state; none; states of different bodies.
         """
         given = list(states)
         if not given:

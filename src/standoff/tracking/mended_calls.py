@@ -24,10 +24,7 @@ Given = tuple[Any, Any, Any, Any]
 def found_anywhere(bodies: tuple[Body, Body], table: AddressTable, given: Given) -> Proximity:
     """The answer of a global query.
 
-    Raises
-    ------
-    StandoffError
-        No pose or twist, or a planar pair out of its plane.
+    Raises StandoffError: no pose or twist, or a planar pair out of its plane.
     """
     numbers, repaired = plain(*given)
     block = np.empty(K.N_BLOCK)
@@ -44,10 +41,7 @@ def found_anywhere(bodies: tuple[Body, Body], table: AddressTable, given: Given)
 def started(table: AddressTable, given: Given, data: Any, how: int) -> tuple[Block, int]:
     """A start from the places in a state's data: its block, and how many poses were repaired.
 
-    Raises
-    ------
-    StandoffError
-        No pose or twist, or a planar pair out of its plane.
+    Raises StandoffError: no pose or twist, or a planar pair out of its plane.
     """
     motion, has_twist, repaired = motion_of(*given)
     block = Block.empty(data, motion, 0.0, has_twist)

@@ -45,6 +45,11 @@ def plot(
     inside both in an overlap, and where the answer is not proven the pieces that are open in its
     search. Where a solid would hide its nearest points, both are drawn transparent.
 
+    Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra. Raises
+    TypeError: no bodies, no answer, or a path that is neither a string nor a Path. Raises
+    ValueError: the answer is of other bodies, or holds no poses; the view is not two numbers; the
+    file has another ending. Raises OSError if the file cannot be written.
+
     Parameters
     ----------
     a, b : Body, Solid or PlanarSolid
@@ -61,18 +66,6 @@ def plot(
     Returns
     -------
     matplotlib.figure.Figure
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If matplotlib is not installed; the message names the extra.
-    TypeError
-        No bodies, no answer, or a path that is neither a string nor a Path.
-    ValueError
-        The answer is of other bodies, or holds no poses; the view is not two numbers; the file has
-        another ending.
-    OSError
-        If the file cannot be written.
     """
     solid = next((each for each in (a, b) if isinstance(each, Pictured)), None)
     if solid is not None:
@@ -114,10 +107,7 @@ def _of_solids(
 def view_angles(view: Any) -> tuple[float, float] | None:
     """Return a viewer's elevation and azimuth, degrees, as given.
 
-    Raises
-    ------
-    ValueError
-        If they are not two finite numbers.
+    Raises ValueError if they are not two finite numbers.
     """
     if view is None:
         return None

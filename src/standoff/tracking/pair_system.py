@@ -74,6 +74,9 @@ def pair_system(
 ) -> PairSystem:
     """Evaluate the paper's system at given points of two bodies.
 
+    Raises TypeError: not a body. Raises ValueError: no pose, twist or feature, or parameters
+    outside it; a planar pair out of its plane.
+
     Parameters
     ----------
     a, b : Body
@@ -87,13 +90,6 @@ def pair_system(
     Returns
     -------
     PairSystem
-
-    Raises
-    ------
-    TypeError
-        Not a body.
-    ValueError
-        No pose, twist or feature, or parameters outside it; a planar pair out of its plane.
     """
     systems = PairSystems(a, b, place_a, place_b)
     pose_a, pose_b = Pose.of(pose_a), Pose.of(pose_b)

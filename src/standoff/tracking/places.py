@@ -24,10 +24,8 @@ PlaceLike = tuple[Feature | tuple[str, int], Any]
 def put(state: StateRow, side: int, body: Body, place: PlaceLike) -> None:
     """Put the witness point of A (0) or B (1) on a place in a state.
 
-    Raises
-    ------
-    ValueError
-        Not a pair of feature and parameters, no such feature, or parameters outside it.
+    Raises ValueError: not a pair of feature and parameters, no such feature, or parameters outside
+    it.
     """
     feature, parameters = _two(place, ("place_a", "place_b")[side])
     kind, index = _feature_of(body, feature)

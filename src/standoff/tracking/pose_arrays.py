@@ -59,9 +59,7 @@ class PoseArray(NamedTuple):
 def numbers(value: Any, name: str, forms: str) -> Array:
     """An array of float64, the one given where it is one.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     try:
         return real_array(value, copy=False)
@@ -76,10 +74,7 @@ def numbers(value: Any, name: str, forms: str) -> Array:
 def read_poses(value: Any, name: str) -> PoseArray:
     """Poses in any of `FORMS`; their numbers are not checked.
 
-    Raises
-    ------
-    StandoffError
-        If it is none of these.
+    Raises StandoffError if it is none of these.
     """
     if isinstance(value, Poses):
         return PoseArray(value.matrices, value.repaired.astype(np.int64))

@@ -136,19 +136,15 @@ class Proximity(Answer, PlainData):
         """Up to four pairs of points that span where the bodies are hardly farther apart
         (docs/touching.md). Computed at each call.
 
+        Raises TypeError: ``after`` is not a patch. Raises ValueError: ``gap`` is not positive; an
+        answer that is FAR, or without a distance or poses.
+
         Parameters
         ----------
         gap : float
             By how much the gap along the normal may be wider than the distance, length.
         after : Patch, optional
             That of the frame before: its corners are gone on with, wherever they are still some.
-
-        Raises
-        ------
-        TypeError
-            ``after`` is not a patch.
-        ValueError
-            ``gap`` is not positive; an answer that is FAR, or without a distance or poses.
         """
         self._refuse_far()
         from standoff.tracking.contact.patches import patch_of

@@ -143,10 +143,7 @@ def cold_table(a: Body, b: Body, within: float | None = None) -> AddressTable:
 
     `within` is the horizon, length.
 
-    Raises
-    ------
-    TypeError, ValueError
-        They cannot be a pair.
+    Raises TypeError, ValueError: they cannot be a pair.
     """
     check_pair(a, b)
     law = DEFAULT_LAW if within is None else PredictorCorrector(within=within)

@@ -66,13 +66,8 @@ def is_planar(pair: tuple[Body, Body]) -> bool:
 def row_pairs(a: Any, b: Any) -> RowPairs:
     """The pairs of two bodies, or of lists of n bodies, one for each row.
 
-    Raises
-    ------
-    TypeError
-        Something that is no body.
-    ValueError
-        Lists of different lengths, or empty ones; bodies that cannot be a pair; some pairs planar
-        and some spatial.
+    Raises TypeError: something that is no body. Raises ValueError: lists of different lengths, or
+    empty ones; bodies that cannot be a pair; some pairs planar and some spatial.
     """
     lists = [list(given) if is_list(given) else None for given in (a, b)]
     if lists[0] is None and lists[1] is None:

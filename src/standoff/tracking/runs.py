@@ -49,10 +49,8 @@ class Frames(NamedTuple):
     def of(cls, poses_a: Any, poses_b: Any, twists: tuple[Any, Any], steps: Array) -> Frames:
         """Read what the caller gave; `steps` are n times, or one.
 
-        Raises
-        ------
-        StandoffError
-            A shape that is not one of those named, or different numbers of frames.
+        Raises StandoffError: a shape that is not one of those named, or different numbers of
+        frames.
         """
         a, marks_a = read_poses(poses_a, "poses_a")
         b, marks_b = read_poses(poses_b, "poses_b")

@@ -35,10 +35,7 @@ COMPILED_AHEAD = {
 def checked_choice(specialise: bool | None) -> bool | None:
     """True, False or None as they are given.
 
-    Raises
-    ------
-    TypeError
-        Anything else.
+    Raises TypeError: anything else.
     """
     if specialise is None or isinstance(specialise, bool):
         return specialise

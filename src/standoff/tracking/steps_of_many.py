@@ -28,6 +28,8 @@ class StepsMany:
     ) -> TrackerStates:
         """Find the witness points of n pairs of poses globally, as ``start`` does.
 
+        Raises TypeError, ValueError as ``start``.
+
         Parameters
         ----------
         poses_a, poses_b : array_like, shape (n, 4, 4) or (n, 12), and others, or one pose for all
@@ -38,11 +40,6 @@ class StepsMany:
         Returns
         -------
         TrackerStates
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``start``.
         """
         from standoff.tracking.many_states import TrackerStates
         from standoff.tracking.runs import Frames, steps_of
@@ -69,6 +66,9 @@ class StepsMany:
         differ from those of ``step`` by 1e-13 of the size at most. All others are the same, to the
         last bit.
 
+        Raises TypeError, ValueError as ``step``, with the number of the row; states of another
+        pair, or of another number.
+
         Parameters
         ----------
         states : TrackerStates
@@ -85,11 +85,6 @@ class StepsMany:
         Returns
         -------
         (TrackerStates, Answers)
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``step``, with the number of the row; states of another pair, or of another number.
         """
         from standoff.errors import StandoffTypeError
         from standoff.tracking.many_states import TrackerStates, step_many

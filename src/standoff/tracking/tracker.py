@@ -49,6 +49,10 @@ HIDDEN = ("check_frame_time", "check_state", "options", "reached", "step_anew", 
 class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     """Keeps the minimum distance of two bodies while they move; of solids as a `SolidTracker`.
 
+    Raises TypeError: not a body or a law; `specialise` is not one of its choices. Raises
+    ValueError: a number that is not positive, a feedback that is not stable at `dt`, a planar body
+    with a spatial one, two half-spaces.
+
     Parameters
     ----------
     a, b : Body
@@ -69,14 +73,6 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     ----------
     a, b, dt, law, specialise
         As given.
-
-    Raises
-    ------
-    TypeError
-        Not a body or a law; `specialise` is not one of its choices.
-    ValueError
-        A number that is not positive, a feedback that is not stable at `dt`, a planar body with a
-        spatial one, two half-spaces.
     """
 
     def __init__(
@@ -128,6 +124,8 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     ) -> TrackerState:
         """Find the witness points globally and certify them.
 
+        Raises ValueError: no pose or twist, or a planar pair out of its plane.
+
         Parameters
         ----------
         pose_a, pose_b : Pose or what ``Pose.of`` reads
@@ -140,11 +138,6 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         -------
         TrackerState
             Its ``proximity`` is the answer at these poses.
-
-        Raises
-        ------
-        ValueError
-            No pose or twist, or a planar pair out of its plane.
         """
         given = pose_a, pose_b, twist_a, twist_b
         return TrackerState(found_anywhere((self.a, self.b), self.table, given))
@@ -162,6 +155,8 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     ) -> TrackerState:
         """Begin at a given place of each body, as ``Proximity.place_a`` and ``place_b`` give them.
 
+        Raises ValueError as ``start``; no place, no such feature, or parameters outside it.
+
         Parameters
         ----------
         pose_a, pose_b, twist_a, twist_b
@@ -174,11 +169,6 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
             True descends from there to the certified minimum (the default of the
             predictor-corrector), False begins exactly there (the default of the paper's law, whose
             feedback then does the work).
-
-        Raises
-        ------
-        ValueError
-            As ``start``; no place, no such feature, or parameters outside it.
         """
         from standoff.tracking.places import put
 
@@ -202,6 +192,10 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     ) -> tuple[TrackerState, Proximity]:
         """The witness points at the given poses, from the state of the frame before.
 
+        Raises TypeError: ``state`` is not a state. Raises ValueError: a state of another pair; no
+        pose or twist; a time that is not positive, or too long for the paper's law; a planar pair
+        out of its plane.
+
         Parameters
         ----------
         state : TrackerState
@@ -217,14 +211,6 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         Returns
         -------
         (TrackerState, Proximity)
-
-        Raises
-        ------
-        TypeError
-            ``state`` is not a state.
-        ValueError
-            A state of another pair; no pose or twist; a time that is not positive, or too long for
-            the paper's law; a planar pair out of its plane.
         """
         if type(state) is not TrackerState:
             self.check_state(state)
@@ -268,6 +254,9 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         """Many frames in one compiled loop, each from the state of the one before, as with
         ``step``.
 
+        Raises TypeError, ValueError as ``step``, with the number of the frame; nothing is answered
+        then.
+
         Parameters
         ----------
         state : TrackerState
@@ -284,11 +273,6 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         -------
         (TrackerState, Answers)
             The state after the last frame, and all answers as arrays.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``step``, with the number of the frame; nothing is answered then.
         """
         from standoff.tracking.runs import Frames, run, steps_of
 
@@ -312,6 +296,8 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         ``buffer.normal``, ``point_a``, ``point_b``, ``lower_bound``, ``upper_bound`` and ``status``
         read them without making an object.
 
+        Raises TypeError, ValueError as ``step``.
+
         Parameters
         ----------
         buffer : FrameBuffer
@@ -326,11 +312,6 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
         -------
         float
             The distance; if the answer is uncertified, ``buffer.proximity()`` says why.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``step``.
         """
         if buffer.reached is not self.reached:
             raise StandoffError(
@@ -372,12 +353,8 @@ class Tracker(StepsMany, MadeByKind, KeepsReadOnly):
     def check_state(self, state: TrackerState) -> None:
         """Refuse what is not a state of this pair: it would be read with this one's features.
 
-        Raises
-        ------
-        TypeError
-            ``state`` is not a state.
-        ValueError
-            A state of another pair, or stored by another version.
+        Raises TypeError: ``state`` is not a state. Raises ValueError: a state of another pair, or
+        stored by another version.
         """
         if not isinstance(state, TrackerState):
             raise StandoffTypeError(

@@ -50,6 +50,8 @@ class _Unheard(VISERS):  # type: ignore[misc]
 def page_of(recording: Recording) -> str:
     """Return a run as a page of HTML that holds all it needs, with play, pause and speed.
 
+    Raises StandoffError if the recording has no bodies or paths.
+
     Parameters
     ----------
     recording : Recording
@@ -58,11 +60,6 @@ def page_of(recording: Recording) -> str:
     Returns
     -------
     str
-
-    Raises
-    ------
-    StandoffError
-        If the recording has no bodies or paths.
     """
     what_moved(recording)
     with made_by(_Unheard):
@@ -79,18 +76,14 @@ def page_of(recording: Recording) -> str:
 def save_page(recording: Recording, path: str | Path) -> None:
     """Write a run as a page that opens without a server, whole or not at all.
 
+    Raises StandoffError as `page_of`; if the file has another ending. Raises OSError if the file
+    cannot be written.
+
     Parameters
     ----------
     recording : Recording
     path : str or path
         An .html file.
-
-    Raises
-    ------
-    StandoffError
-        As `page_of`; if the file has another ending.
-    OSError
-        If the file cannot be written.
     """
     target = file_name(path)
     if target.suffix.lower() not in (".html", ".htm"):

@@ -21,16 +21,13 @@ RunWriter = Callable[[Recording, BinaryIO], object]
 def writer_of(path: Path, progress: Progress | None = None) -> RunWriter:
     """Return what writes a run to a file of one of the `ENDINGS`.
 
+    Raises ModuleNotFoundError if a library is missing that it needs; the message names the extra.
+
     Parameters
     ----------
     path : Path
     progress : callable, optional
         ``progress(done, total)`` is called with the pictures of a film drawn so far, and all.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If a library is missing that it needs; the message names the extra.
     """
     match ending := path.suffix.lower():
         case ".html":

@@ -34,6 +34,8 @@ def moves(scene: Scene) -> bool:
 def with_law(settings: TrackSettings, law: str, integrator: str, share: float, dt: float) -> Any:
     """Return settings with another law.
 
+    Raises SceneError if they do not go together.
+
     Parameters
     ----------
     settings : TrackSettings
@@ -42,11 +44,6 @@ def with_law(settings: TrackSettings, law: str, integrator: str, share: float, d
         Gain of the paper's law over the largest that is stable, above 0 and below 1.
     dt : float
         Frame time [s].
-
-    Raises
-    ------
-    SceneError
-        If they do not go together.
     """
     if law not in LAWS or integrator not in INTEGRATORS or not 0.0 < share < 1.0:
         raise SceneError(f"no law: {law!r}, {integrator!r}, {share!r}")

@@ -20,6 +20,8 @@ milliseconds."""
 class LivePair:
     """Two bodies, where they are, and the tracker's answer there.
 
+    Raises ValueError: what `Tracker` and its `start` refuse.
+
     Parameters
     ----------
     a, b : Body
@@ -35,11 +37,6 @@ class LivePair:
     poses : (Pose, Pose)
     answer : Proximity
         At these poses.
-
-    Raises
-    ------
-    ValueError
-        What `Tracker` and its `start` refuse.
     """
 
     def __init__(
@@ -58,10 +55,7 @@ class LivePair:
     def follow(self, law: Law) -> None:
         """Continue with another law, from a new start here.
 
-        Raises
-        ------
-        ValueError
-            What the tracker refuses; the pair is as it was then.
+        Raises ValueError: what the tracker refuses; the pair is as it was then.
         """
         changed = LivePair(*self.bodies, self.poses, law, self.tracker.dt)
         self.tracker, self._state, self.answer = changed.tracker, changed._state, changed.answer
@@ -69,10 +63,7 @@ class LivePair:
     def restart(self, poses: tuple[Pose, Pose]) -> None:
         """Start again at poses, as after a leap.
 
-        Raises
-        ------
-        ValueError
-            As of `Tracker.start`; the pair is as it was then.
+        Raises ValueError as of `Tracker.start`; the pair is as it was then.
         """
         self._state = self.tracker.start(*poses, Twist.zero(), Twist.zero())
         self.poses, self.answer = poses, self._state.proximity
@@ -82,16 +73,13 @@ class LivePair:
 
         A law that lags behind gets no more time than has passed: what it shows is its own lag.
 
+        Raises ValueError as of `Tracker.step`; the pair is as it was then.
+
         Parameters
         ----------
         poses : (Pose, Pose)
         elapsed : float
             Time that this takes [s].
-
-        Raises
-        ------
-        ValueError
-            As of `Tracker.step`; the pair is as it was then.
         """
         dt = self.tracker.dt
         count = int(np.clip(round(elapsed / dt), 1, MOST_FRAMES))

@@ -26,10 +26,7 @@ Poses = tuple[Pose, Pose]
 def tracker_of(a: Any, b: Any, asked: MinimaAsked, dt: float = 1e-3) -> SolidTracker:
     """Return the tracker of a pair that a page shows, at least one of both a solid.
 
-    Raises
-    ------
-    StandoffError
-        What has no tracker, as planar solids, or a number that is not positive.
+    Raises StandoffError: what has no tracker, as planar solids, or a number that is not positive.
     """
     for name, body in (("A", a), ("B", b)):
         if body.dimension == 2:
@@ -50,6 +47,8 @@ def tracker_of(a: Any, b: Any, asked: MinimaAsked, dt: float = 1e-3) -> SolidTra
 class LiveSolids:
     """Two solids where they are put, and the tracker's answer there.
 
+    Raises ValueError: what ``tracker.start`` refuses.
+
     Parameters
     ----------
     tracker : SolidTracker
@@ -62,11 +61,6 @@ class LiveSolids:
     poses : (Pose, Pose)
     answer : SolidProximity
         At these poses.
-
-    Raises
-    ------
-    ValueError
-        What ``tracker.start`` refuses.
     """
 
     def __init__(self, tracker: SolidTracker, poses: Poses) -> None:
@@ -81,10 +75,7 @@ class LiveSolids:
     def restart(self, poses: Poses) -> None:
         """Start again at poses: keys of minima count from 0.
 
-        Raises
-        ------
-        ValueError
-            As of ``tracker.start``; the pair is as it was then.
+        Raises ValueError as of ``tracker.start``; the pair is as it was then.
         """
         # A start in overlap tells the deepest place alone; a frame tells all of them, with keys.
         self._state, self.answer = self.tracker.step(self.tracker.start(*poses), *poses)
@@ -93,10 +84,7 @@ class LiveSolids:
     def move(self, poses: Poses) -> SolidProximity:
         """Put the solids at poses, in one frame, and return the answer there.
 
-        Raises
-        ------
-        ValueError
-            As of ``tracker.step``; the pair is as it was then.
+        Raises ValueError as of ``tracker.step``; the pair is as it was then.
         """
         self._state, self.answer = self.tracker.step(self._state, *poses)
         self.poses = poses
@@ -147,17 +135,14 @@ class SolidCourse:
 def course_of(tracker: SolidTracker, times: Array, poses: Sequence[Poses]) -> SolidCourse:
     """Follow a pair over all frames.
 
+    Raises ValueError: what the tracker refuses.
+
     Parameters
     ----------
     tracker : SolidTracker
     times : (n,) array [s]
     poses : sequence of (Pose, Pose)
         Of the n frames.
-
-    Raises
-    ------
-    ValueError
-        What the tracker refuses.
     """
     state = tracker.start(*poses[0])
     a, b = ([each[k].matrix for each in poses] for k in (0, 1))

@@ -53,14 +53,11 @@ class MovingWorld(NamedTuple):
 def world_of_scene(scene: Scene) -> MovingWorld:
     """Return the world of a scene, moved as the scene says.
 
+    Raises SceneError if the bodies are no world, or the times are not possible.
+
     Parameters
     ----------
     scene : Scene
-
-    Raises
-    ------
-    SceneError
-        If the bodies are no world, or the times are not possible.
     """
     scene = scene.as_world
     still = all(isinstance(scene.motions[name].path, Fixed) for name in scene.world.moving)
@@ -77,6 +74,8 @@ def world_of_scene(scene: Scene) -> MovingWorld:
 def moving_world(world: World, given: Any, duration: float | None = None) -> MovingWorld:
     """Return a world at poses, or moved along paths.
 
+    Raises TypeError, ValueError if there are none of these.
+
     Parameters
     ----------
     world : World
@@ -85,11 +84,6 @@ def moving_world(world: World, given: Any, duration: float | None = None) -> Mov
         time or poses.
     duration : float, optional
         Of the motion [s], in frames of the world's own time.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If there are none of these.
     """
     title = counted(len(world), "body", "bodies")
     if duration is None:
@@ -156,10 +150,7 @@ class Course(NamedTuple):
 def course_of(given: MovingWorld) -> Course:
     """Return the course of a world that moves by itself.
 
-    Raises
-    ------
-    StandoffError
-        What `World.step` refuses.
+    Raises StandoffError: what `World.step` refuses.
     """
     world, times = given.world, given.times
     state = world.start(given.poses(float(times[0])))
@@ -174,6 +165,8 @@ def course_of(given: MovingWorld) -> Course:
 class LiveWorld:
     """A world whose bodies are where they are put, and its answer there.
 
+    Raises TypeError, ValueError: what `World.start` refuses.
+
     Parameters
     ----------
     world : World
@@ -184,11 +177,6 @@ class LiveWorld:
     ----------
     world : World
     answer : WorldAnswer
-
-    Raises
-    ------
-    TypeError, ValueError
-        What `World.start` refuses.
     """
 
     def __init__(self, world: World, poses: Any) -> None:
@@ -204,10 +192,7 @@ class LiveWorld:
     def move(self, poses: Any) -> WorldAnswer:
         """Put the bodies at poses, however far away, and return the answer there.
 
-        Raises
-        ------
-        TypeError, ValueError
-            What `World.step` refuses; all is as it was then.
+        Raises TypeError, ValueError: what `World.step` refuses; all is as it was then.
         """
         _, self.answer = self.world.step(self.answer.state, poses)
         return self.answer

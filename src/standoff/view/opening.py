@@ -49,6 +49,11 @@ def view(
 ) -> ServedPage:
     """Show a scene, a run, a pair of bodies, a world or a simulation (docs/live-page.md).
 
+    Raises ModuleNotFoundError if viser is not installed; the message names the extra. Raises
+    TypeError if that cannot be shown. Raises ValueError if a scene is refused, the pair cannot be
+    tracked, or the port is not available; if minima or patches are asked of what is no pair with a
+    solid.
+
     Parameters
     ----------
     *what
@@ -76,16 +81,6 @@ def view(
     ServedPage
         It serves until ``close``, or until the end of its ``with`` block; open its ``address``. In
         a notebook it shows itself.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If viser is not installed; the message names the extra.
-    TypeError
-        If that cannot be shown.
-    ValueError
-        If a scene is refused, the pair cannot be tracked, or the port is not available; if minima
-        or patches are asked of what is no pair with a solid.
     """
     asked = MinimaAsked(minima, patch)
     page = page_of(_shown(what), host=host, port=port, asked=asked)
@@ -106,6 +101,8 @@ def page_of(
 ) -> ServedPage:
     """Return the page of a scene's pair, of a world or of a simulation, served.
 
+    Raises ModuleNotFoundError, TypeError, ValueError as `view`.
+
     Parameters
     ----------
     what : Scene, MovingWorld or Simulated
@@ -115,11 +112,6 @@ def page_of(
         Scenes of pairs that the page of a pair of bodies can open besides, by title.
     asked : MinimaAsked, optional
         Of a pair with a solid.
-
-    Raises
-    ------
-    ModuleNotFoundError, TypeError, ValueError
-        As `view`.
     """
     if isinstance(what, Scene) and has_solids(what):
         from standoff.view.solid_page import SolidPage
@@ -160,16 +152,13 @@ def of_scene(scene: Scene) -> Scene | MovingWorld:
 def simulation_of(file: str | os.PathLike[str], progress: Progress | None = None) -> Simulated:
     """Run the scene of a simulation, and return it with all its contacts.
 
+    Raises SceneError if the scene is not usable, or the motion left all bounds.
+
     Parameters
     ----------
     file : str or path
     progress : callable, optional
         As of ``Operator.run``.
-
-    Raises
-    ------
-    SceneError
-        If the scene is not usable, or the motion left all bounds.
     """
     from standoff.scene.simulation import load_simulation
     from standoff.view.shown_simulation import Simulated
@@ -239,14 +228,11 @@ class _Stretch:
 def scene_of(recording: Recording) -> Scene:
     """Return the scene of which a recording was made.
 
+    Raises StandoffError if it was opened from a file or copied: it does not hold what moved then.
+
     Parameters
     ----------
     recording : Recording
-
-    Raises
-    ------
-    StandoffError
-        If it was opened from a file or copied: it does not hold what moved then.
     """
     if recording.pair is None or recording.paths is None:
         raise StandoffError(

@@ -18,17 +18,14 @@ from standoff.world.shapes import is_solid
 class Page(ServedPage):
     """A scene in the browser: played, or a body of it dragged by a handle.
 
+    Raises StandoffError if the pair cannot be tracked; and as `ServedPage`.
+
     Parameters
     ----------
     scene : Scene
     others : mapping of str to Path, optional
         Scenes that the page can open besides, by title.
     host, port : as for `ServedPage`
-
-    Raises
-    ------
-    StandoffError
-        If the pair cannot be tracked; and as `ServedPage`.
     """
 
     def __init__(

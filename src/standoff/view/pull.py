@@ -39,6 +39,8 @@ resists with a small part of its mass."""
 class Pull:
     """A dragged body as the tool of a virtual coupler, the other one held fast.
 
+    Raises StandoffError if the bodies cannot be simulated, as planar ones or a tool without end.
+
     Parameters
     ----------
     pair : LivePair
@@ -56,11 +58,6 @@ class Pull:
         On the tool, world axes [N].
     fault : str
         Why the coupler let go; empty while it has not.
-
-    Raises
-    ------
-    StandoffError
-        If the bodies cannot be simulated, as planar ones or a tool without end.
     """
 
     def __init__(self, pair: LivePair, number: int, size: float, max_force: float) -> None:
@@ -112,16 +109,13 @@ class Pull:
     def step(self, handle: Pose, elapsed: float) -> Pose:
         """Carry the handle to a pose, and return where the tool is then.
 
+        Raises StandoffError: what the simulation refuses.
+
         Parameters
         ----------
         handle : Pose
         elapsed : float
             Time that this takes [s].
-
-        Raises
-        ------
-        StandoffError
-            What the simulation refuses.
         """
         ticks = int(np.clip(round(elapsed / TICK), 1, MOST_TICKS))
         path = ConstantTwist(self._handle, Twist.between(self._handle, handle, ticks * TICK))

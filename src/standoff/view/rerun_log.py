@@ -31,23 +31,17 @@ def save_rerun(recording: Recording, path: str | Path) -> None:
     the line between them, ``/distance`` and ``/lower_bound``, and every switch as a line of text.
     Of a run of more than 2000 frames, 2000 are written, evenly chosen.
 
+    Raises ModuleNotFoundError if rerun-sdk is not installed; the message names the extra. Raises
+    TypeError if `path` is neither a string nor a Path. Raises ValueError if the file has another
+    ending, or the recording was opened from a file or copied. Raises OSError if the file cannot be
+    written.
+
     Parameters
     ----------
     recording : Recording
         As `so.track` returned it: one from a file does not hold what moved.
     path : str or path
         An .rrd file, written whole or not at all.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If rerun-sdk is not installed; the message names the extra.
-    TypeError
-        If `path` is neither a string nor a Path.
-    ValueError
-        If the file has another ending, or the recording was opened from a file or copied.
-    OSError
-        If the file cannot be written.
     """
     target = file_name(path)
     if target.suffix.lower() != ".rrd":

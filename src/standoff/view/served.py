@@ -63,6 +63,9 @@ class ServedPage:
 
     A subclass makes its panel and stage in `_opening`.
 
+    Raises ModuleNotFoundError if viser is not installed; the message names the extra. Raises
+    StandoffError if the port is not available.
+
     Parameters
     ----------
     host : str
@@ -76,13 +79,6 @@ class ServedPage:
         To be opened in a browser; it holds the token of this run.
     stage : Staged
         What is shown.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If viser is not installed; the message names the extra.
-    StandoffError
-        If the port is not available.
     """
 
     stage: Staged

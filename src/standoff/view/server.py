@@ -80,10 +80,8 @@ class GuardedServer(VISERS):  # type: ignore[misc]
     def start(self) -> None:
         """Start the server.
 
-        Raises
-        ------
-        StandoffError
-            If its thread ended, or opened the port past the guard; the port is closed then.
+        Raises StandoffError if its thread ended, or opened the port past the guard; the port is
+        closed then.
         """
         super().start()
         if self.guarded and self.fault is None:
@@ -218,17 +216,14 @@ class _Websockets(types.ModuleType):
 def guarded_server(access: Access, port: int | None = None) -> viser.ViserServer:
     """Return a running server of viser's, with the guard before its port.
 
+    Raises StandoffError if the port or the host is not available; if this viser opens its port in
+    another way than those for which the guard was made, and is stopped at once.
+
     Parameters
     ----------
     access : Access
     port : int, optional
         If not given, any that is free.
-
-    Raises
-    ------
-    StandoffError
-        If the port or the host is not available; if this viser opens its port in another way than
-        those for which the guard was made, and is stopped at once.
     """
     check_free(access.host, port or 0)
     kind = type("GuardedServer", (GuardedServer,), {"access": access})
@@ -262,9 +257,7 @@ def name_tab(server: viser.ViserServer, title: str) -> None:
 def check_free(host: str, port: int) -> None:
     """Refuse a host that does not belong to this machine, or a port that is in use.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:

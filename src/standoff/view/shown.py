@@ -80,10 +80,7 @@ def of_frame(recording: Recording, frame: int) -> Shown:
 def what_moved(recording: Recording) -> tuple[tuple[Body, Body], Paths]:
     """Return the bodies of a run and their paths.
 
-    Raises
-    ------
-    StandoffError
-        If it was opened from a file or copied: it does not hold them then.
+    Raises StandoffError if it was opened from a file or copied: it does not hold them then.
     """
     if recording.pair is None or recording.paths is None:
         raise StandoffError(

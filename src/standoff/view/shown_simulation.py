@@ -56,10 +56,7 @@ class Simulated(NamedTuple):
 def simulated(what: SystemRun | tuple[Operator, SystemState]) -> Simulated:
     """Return a simulation from Python, its bodies by their own names.
 
-    Raises
-    ------
-    StandoffError
-        A run that has kept no contacts.
+    Raises StandoffError: a run that has kept no contacts.
     """
     run = what if isinstance(what, SystemRun) else None
     if run is not None and run.told is None:

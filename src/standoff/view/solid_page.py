@@ -13,16 +13,13 @@ from standoff.view.solid_stage import SolidStage
 class SolidPage(ServedPage):
     """A pair of solids in the browser, with all its minima: played, or dragged by a handle.
 
+    Raises StandoffError if the pair cannot be tracked; and as `ServedPage`.
+
     Parameters
     ----------
     scene : Scene
     asked : MinimaAsked
     host, port : as for `ServedPage`
-
-    Raises
-    ------
-    StandoffError
-        If the pair cannot be tracked; and as `ServedPage`.
     """
 
     def __init__(

@@ -27,6 +27,8 @@ from standoff.view.solid_picture import SolidPicture
 class SolidStage(PairStage[SolidCourse]):
     """A scene of a pair, at least one of both a solid, as a page shows it.
 
+    Raises SceneError if the pair cannot be tracked, or the scene's times are not possible.
+
     Parameters
     ----------
     panel : SolidPanel
@@ -41,11 +43,6 @@ class SolidStage(PairStage[SolidCourse]):
     player : Player or None
         What is played; None where nothing moves by itself.
     picture : SolidPicture
-
-    Raises
-    ------
-    SceneError
-        If the pair cannot be tracked, or the scene's times are not possible.
     """
 
     def __init__(

@@ -27,6 +27,8 @@ from standoff.view.shown import Shown, of_answer, of_frame
 class Stage(PairStage[Recording]):
     """A scene as a page shows it.
 
+    Raises StandoffError: what tracking the scene raises; then nothing on the page is changed.
+
     Parameters
     ----------
     panel : Panel
@@ -44,11 +46,6 @@ class Stage(PairStage[Recording]):
     player : Player or None
         What is played; None where nothing moves by itself.
     picture : Picture
-
-    Raises
-    ------
-    StandoffError
-        What tracking the scene raises; then nothing on the page is changed.
     """
 
     def __init__(
@@ -93,10 +90,7 @@ class Stage(PairStage[Recording]):
     def pull(self, on: bool) -> None:
         """Pull the dragged body through the virtual coupler, or carry it.
 
-        Raises
-        ------
-        StandoffError
-            If nothing is dragged, or the pair cannot be simulated.
+        Raises StandoffError if nothing is dragged, or the pair cannot be simulated.
         """
         self._let_go()
         if not on:
@@ -132,10 +126,7 @@ class Stage(PairStage[Recording]):
     def law(self, name: str, integrator: str, share: float) -> None:
         """Follow another law, with a share of the greatest stable gain.
 
-        Raises
-        ------
-        StandoffError
-            If the pair cannot be tracked by it; all is as it was then.
+        Raises StandoffError if the pair cannot be tracked by it; all is as it was then.
         """
         try:
             settings = laws.with_law(self._settings, name, integrator, share, self._dt)

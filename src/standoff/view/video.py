@@ -32,6 +32,11 @@ def save_video(
 ) -> None:
     """Write a run as a video of both bodies, their active features and the witness line.
 
+    Raises ModuleNotFoundError if matplotlib, or for an MP4 imageio-ffmpeg, is not installed; the
+    message names the extra. Raises TypeError if `path` is neither a string nor a Path. Raises
+    ValueError if the file has another ending, a number is out of range, or the recording was opened
+    from a file or copied. Raises OSError if the file cannot be written.
+
     Parameters
     ----------
     recording : Recording
@@ -48,18 +53,6 @@ def save_video(
         the closest frame.
     progress : callable, optional
         ``progress(done, total)`` is called with the pictures drawn so far, and all.
-
-    Raises
-    ------
-    ModuleNotFoundError
-        If matplotlib, or for an MP4 imageio-ffmpeg, is not installed; the message names the extra.
-    TypeError
-        If `path` is neither a string nor a Path.
-    ValueError
-        If the file has another ending, a number is out of range, or the recording was opened from a
-        file or copied.
-    OSError
-        If the file cannot be written.
     """
     target = file_name(path)
     ending = target.suffix.lower()
@@ -82,10 +75,7 @@ def save_video(
 def check_installed(ending: str) -> None:
     """Refuse an ending, .gif or .mp4, whose libraries are missing.
 
-    Raises
-    ------
-    ModuleNotFoundError
-        The message names the extra.
+    Raises ModuleNotFoundError: the message names the extra.
     """
     with of_extra("", "video"):
         import matplotlib  # noqa: F401

@@ -11,15 +11,12 @@ from standoff.view.world_stage import WorldStage
 class WorldPage(ServedPage):
     """A world in the browser: played, or a body of it dragged by a handle.
 
+    Raises StandoffError if the world refuses its poses; and as `ServedPage`.
+
     Parameters
     ----------
     given : MovingWorld
     host, port : as for `ServedPage`
-
-    Raises
-    ------
-    StandoffError
-        If the world refuses its poses; and as `ServedPage`.
     """
 
     def __init__(

@@ -32,6 +32,8 @@ MOST_COUNTED = 1000
 class WorldStage(PlayedStage[Course]):
     """A world as a page shows it.
 
+    Raises StandoffError: what the world refuses.
+
     Parameters
     ----------
     panel : WorldPanel
@@ -45,11 +47,6 @@ class WorldStage(PlayedStage[Course]):
     player : Player or None
         What is played; None where nothing moves by itself.
     picture : WorldPicture
-
-    Raises
-    ------
-    StandoffError
-        What the world refuses.
     """
 
     def __init__(

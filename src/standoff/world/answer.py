@@ -123,9 +123,7 @@ class WorldAnswer(KeepsReadOnly):
     def _pair(self, names: Any) -> tuple[int, int]:
         """The numbers of two bodies whose pair counts.
 
-        Raises
-        ------
-        StandoffError
+        Raises StandoffError.
         """
         if not (isinstance(names, tuple) and len(names) == 2):
             raise StandoffTypeError(

@@ -28,10 +28,7 @@ def changed_arguments(
 ) -> dict[str, Any]:
     """The arguments of a world with some bodies more and without others.
 
-    Raises
-    ------
-    TypeError, ValueError
-        A name that the world does not have, or has already.
+    Raises TypeError, ValueError: a name that the world does not have, or has already.
     """
     bodies, fixed = arguments["bodies"], arguments["fixed"]
     entering, gone = mapping_of(add, "add", "bodies"), names_of(remove, "remove")
@@ -75,10 +72,8 @@ def given_without(given: Given, gone: Collection[str]) -> Given:
 def carried_poses(world: Model, old: Model, before: WorldState, poses: Any) -> GivenPoses:
     """The poses of a world's bodies: those given, and else where another world's state has them.
 
-    Raises
-    ------
-    TypeError, ValueError
-        No mapping; a body that enters has no pose; a pose of no body of the world that moves.
+    Raises TypeError, ValueError: no mapping; a body that enters has no pose; a pose of no body of
+    the world that moves.
     """
     given = {} if poses is None else poses
     if not isinstance(given, Mapping):

@@ -54,6 +54,10 @@ class Compound(PieceUnion):
 def compound(pieces: Mapping[str, PieceLike]) -> Compound:
     """A rigid body of several pieces with fixed placements.
 
+    Raises TypeError: not a mapping, a name that is no string, a piece that is no body and no solid.
+    Raises ValueError: no piece, no pose, planar pieces among spatial ones, a planar piece out of z
+    = 0.
+
     Parameters
     ----------
     pieces : mapping of str to Body, Solid or PlanarSolid, or to one with its pose
@@ -62,13 +66,6 @@ def compound(pieces: Mapping[str, PieceLike]) -> Compound:
     Returns
     -------
     Compound
-
-    Raises
-    ------
-    TypeError
-        Not a mapping, a name that is no string, a piece that is no body and no solid.
-    ValueError
-        No piece, no pose, planar pieces among spatial ones, a planar piece out of z = 0.
     """
     return Compound(pieces)
 
@@ -78,10 +75,8 @@ def cold_answer(
 ) -> PairAnswer | SolidProximity:
     """The answer of two bodies, the least over their pieces; see ``so.distance``.
 
-    Raises
-    ------
-    TypeError, ValueError
-        As of a `World`: no body, no pose, a planar one with a spatial one or out of its plane.
+    Raises TypeError, ValueError as of a `World`: no body, no pose, a planar one with a spatial one
+    or out of its plane.
     """
     checked_bodies({"a": a, "b": b})  # what cannot be hashed is no body either
     found = _world(a, b, within).distances({"a": pose_a, "b": pose_b})["a", "b"]

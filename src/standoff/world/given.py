@@ -25,10 +25,7 @@ BodyLike: TypeAlias = "Shape | PieceUnion"
 def law_of_pairs(law: Any) -> Law:
     """The law by which pairs are tracked.
 
-    Raises
-    ------
-    TypeError, ValueError
-        Not a law; one with a horizon of its own.
+    Raises TypeError, ValueError: not a law; one with a horizon of its own.
     """
     found: Law = checked_law(law)
     if found.within is not None:
@@ -44,9 +41,7 @@ def law_of_pairs(law: Any) -> Law:
 def mapping_of(given: Any, argument: str, values: str) -> dict[Any, Any]:
     """A mapping that may be left out.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if given is None or isinstance(given, Mapping):
         return dict(given or {})
@@ -58,9 +53,7 @@ def mapping_of(given: Any, argument: str, values: str) -> dict[Any, Any]:
 def pairs_of(given: Any, argument: str) -> tuple[Any, ...]:
     """Pairs of names, as a tuple.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
         raise StandoffTypeError(
@@ -72,9 +65,7 @@ def pairs_of(given: Any, argument: str) -> tuple[Any, ...]:
 def names_of(given: Any, argument: str) -> tuple[Any, ...]:
     """Names of bodies, as a tuple.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if isinstance(given, str) or not isinstance(given, Iterable):
         raise StandoffTypeError(
@@ -86,9 +77,7 @@ def names_of(given: Any, argument: str) -> tuple[Any, ...]:
 def checked_bodies(bodies: Any) -> dict[str, BodyLike]:
     """Bodies by name.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if not isinstance(bodies, Mapping) or not bodies:
         raise StandoffTypeError(
@@ -123,10 +112,7 @@ def named_pieces(bodies: Mapping[str, BodyLike]) -> dict[str, Piece]:
 def fixed_poses_of(names: Sequence[str], given: Mapping[str, PoseLike]) -> Array:
     """World poses (n, 4, 4) of the fixed bodies, as every frame reads them.
 
-    Raises
-    ------
-    StandoffError
-        No pose; the body's name is told.
+    Raises StandoffError: no pose; the body's name is told.
     """
     poses = np.empty((len(names), 4, 4))
     for k, name in enumerate(names):

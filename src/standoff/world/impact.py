@@ -62,10 +62,8 @@ def first_impact(
     """See ``World.time_of_impact``: pairs that may meet are searched in the order of the times at
     which they may, each up to the earliest time found so far.
 
-    Raises
-    ------
-    StandoffError
-        A path that is missing, or as ``so.time_of_impact``, with the names of the body or the pair.
+    Raises StandoffError: a path that is missing, or as ``so.time_of_impact``, with the names of the
+    body or the pair.
     """
     given, (start, end) = _checked(world, paths, duration, options)
     parts = [
@@ -95,10 +93,8 @@ def _checked(
 ) -> tuple[list[Any], tuple[float, float]]:
     """(the path of each body, times at which the search begins and ends [s]).
 
-    Raises
-    ------
-    StandoffError
-        As ``so.time_of_impact``, also where no pair is searched; with the name of the body.
+    Raises StandoffError as ``so.time_of_impact``, also where no pair is searched; with the name of
+    the body.
     """
     for name in options.keys() - OPTIONS:
         raise StandoffTypeError(

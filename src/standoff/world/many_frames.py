@@ -49,10 +49,7 @@ class PieceAnswers(NamedTuple):
 def pieces_placed(world: Model, poses: Array) -> Array:
     """(n pieces, N_PLACED): where the pieces are, at poses of all bodies (n, 4, 4).
 
-    Raises
-    ------
-    StandoffError
-        A pose is none.
+    Raises StandoffError: a pose is none.
     """
     nothing = empty_placed(len(world.search.pieces.owners)).placed
     tree = no_tree(len(nothing))

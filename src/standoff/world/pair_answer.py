@@ -59,10 +59,7 @@ class PairAnswer(Proximity):
     def derivatives(self) -> Derivatives:
         """As of a `Proximity`, by the motions of the two *bodies*; of the nearest pair of pieces.
 
-        Raises
-        ------
-        StandoffError
-            Of a pair that is FAR.
+        Raises StandoffError: of a pair that is FAR.
         """
         self._refuse_far()
         found = super().derivatives()

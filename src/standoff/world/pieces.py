@@ -79,9 +79,7 @@ def is_mapping(given: Any) -> bool:
 def name_of(name: Any) -> str:
     """A name, checked.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if isinstance(name, str) and name:
         return name
@@ -116,9 +114,7 @@ def _exact(pose: Pose, planar: bool) -> Pose:
 def check_in_plane(pieces: Mapping[str, Piece]) -> None:
     """Refuse a piece that is fixed out of z = 0; its name is told.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     check_level(list(pieces), [matrix_and_mark(x.pose)[0] for x in pieces.values()], "pieces")
 

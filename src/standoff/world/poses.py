@@ -39,10 +39,8 @@ class GivenPoses(NamedTuple):
 def read_poses_of(poses: Any, names: Sequence[str], planar: bool) -> GivenPoses:
     """Poses of the named bodies, in this order; their numbers are left for the kernel to check.
 
-    Raises
-    ------
-    StandoffError
-        Another number of poses, a name that is missing or unknown, a planar body out of z = 0.
+    Raises StandoffError: another number of poses, a name that is missing or unknown, a planar body
+    out of z = 0.
     """
     if isinstance(poses, Mapping):
         check_names(poses, names, "poses")
@@ -74,9 +72,7 @@ def check_level(names: Sequence[str], matrices: Any, argument: str) -> None:
     """Refuse poses (n, 4, 4) that take a planar body out of z = 0; the name of the first is told.
     What is no number is left for others to refuse.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     flat = flat_poses(np.ascontiguousarray(matrices))
     out = out_of_plane(flat) & np.isfinite(flat).all(axis=1)
@@ -95,10 +91,7 @@ def mend_poses(given: GivenPoses, names: Sequence[str]) -> GivenPoses:
     """Poses that the kernel has refused, repaired where they are only rounded, or so far off that
     one that is composed with a placement is off by more than is let pass.
 
-    Raises
-    ------
-    StandoffError
-        More than rounding is wrong with one; its name is told.
+    Raises StandoffError: more than rounding is wrong with one; its name is told.
     """
     found = mended(given.matrices)
     for k in np.flatnonzero(found.refused)[:1]:
@@ -126,9 +119,7 @@ def refused_pose(name: str) -> StandoffError:
 def check_names(given: Mapping[str, Any], names: Sequence[str], argument: str) -> None:
     """Refuse a mapping that does not have each of the names and no other.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     for name in names:
         if name not in given:
@@ -151,10 +142,8 @@ def read_twists_of(
 ) -> tuple[Array, bool]:
     """(twist and origin of each body (n, 9), are there any?); fixed bodies are at rest.
 
-    Raises
-    ------
-    StandoffError
-        Another number of twists, a name that is missing or unknown, a number that is not finite.
+    Raises StandoffError: another number of twists, a name that is missing or unknown, a number that
+    is not finite.
     """
     if twists is None:
         return NO_TWISTS, False
@@ -201,10 +190,7 @@ def read_twists_of(
 def frames_of(given: Any, name: str) -> Any:
     """Frames in an array of another library, read where it is; anything else as it is given.
 
-    Raises
-    ------
-    StandoffError
-        An array that is on a device, or not of numbers.
+    Raises StandoffError: an array that is on a device, or not of numbers.
     """
     if isinstance(given, np.ndarray) or not hasattr(given, "__dlpack_device__"):
         return given
@@ -214,9 +200,7 @@ def frames_of(given: Any, name: str) -> Any:
 def check_frames(poses: Any, twists: Any) -> None:
     """Refuse twists of another number of frames, where both are known.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     if isinstance(poses, Sized) and isinstance(twists, Sized) and len(twists) != len(poses):
         raise StandoffError(

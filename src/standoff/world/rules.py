@@ -108,10 +108,8 @@ class Given(NamedTuple):
 class Names:
     """Bodies and groups by name.
 
-    Raises
-    ------
-    StandoffError
-        A group of a body's name, of nobody, or of bodies that the world does not have.
+    Raises StandoffError: a group of a body's name, of nobody, or of bodies that the world does not
+    have.
     """
 
     def __init__(self, bodies: Sequence[str], groups: Mapping[str, Sequence[str]]) -> None:
@@ -205,10 +203,7 @@ def packed_rules(names: Names, fixed: NDArray[np.bool_], given: Given) -> Rules:
 def _sides(names: Names, pair: Any, argument: str) -> Sides:
     """The bodies on both sides of a rule.
 
-    Raises
-    ------
-    StandoffError
-        A name that nobody has, or a body with itself, which is no pair.
+    Raises StandoffError: a name that nobody has, or a body with itself, which is no pair.
     """
     a, b = names.pair(pair, argument)
     sides = names.members(a, argument), names.members(b, argument)
@@ -300,9 +295,7 @@ def check_half_spaces(
 ) -> None:
     """Refuse two half-spaces that would be a pair.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     endless = [k for k, each in enumerate(pieces) if any(not is_bounded(p.body) for p in each)]
     for i, j in itertools.combinations(endless, 2):

@@ -43,11 +43,8 @@ def solid_pairs(
 ) -> SolidPairs:
     """Of all bodies, with what is asked of them made and checked.
 
-    Raises
-    ------
-    StandoffError
-        A body in a pair with a solid that has no volume, or whose rounded boundary is of no exact
-        kind; its name is told.
+    Raises StandoffError: a body in a pair with a solid that has no volume, or whose rounded
+    boundary is of no exact kind; its name is told.
     """
     n = len(names)
     solid = np.array([any(is_solid(piece.body) for piece in each) for each in pieces])
@@ -89,6 +86,8 @@ def _asked(name: str, shape: Shape) -> Any:
 def refuse_solids(bodies: Mapping[str, Any], what: str, instead: str) -> None:
     """Refuse bodies that are solids, or have one among their pieces, where only convex ones go.
 
+    Raises StandoffError: the name of the first is told.
+
     Parameters
     ----------
     bodies : mapping of str to Body, Solid, PlanarSolid or Compound
@@ -96,11 +95,6 @@ def refuse_solids(bodies: Mapping[str, Any], what: str, instead: str) -> None:
         Does not take solids: the first words of the message.
     instead : str
         What to use: its last words.
-
-    Raises
-    ------
-    StandoffError
-        The name of the first is told.
     """
     for name, body in bodies.items():
         shapes = [x.body for x in body.pieces.values()] if isinstance(body, PieceUnion) else [body]

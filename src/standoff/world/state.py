@@ -181,9 +181,7 @@ class WorldState(KeepsReadOnly):
 def check_key(state: Any, key: str) -> None:
     """Refuse what is not a state of the world with a mark.
 
-    Raises
-    ------
-    TypeError, ValueError
+    Raises TypeError, ValueError.
     """
     if not isinstance(state, WorldState):
         raise StandoffTypeError(

@@ -51,6 +51,11 @@ class World(KeepsReadOnly):
 
     Immutable, and compiled once: what changes from frame to frame is its state, a value.
 
+    Raises TypeError: not a body, a name that is no string, not a law. Raises ValueError: a name
+    that nobody has, planar bodies among spatial ones or out of z = 0, a group of nobody, a body in
+    a pair with itself, two half-spaces that would be a pair, a number that is negative or NaN, a
+    law with a horizon of its own, a half-space or a rounded body in a pair with a solid.
+
     Parameters
     ----------
     bodies : mapping of str to Body, Solid, PlanarSolid or Compound
@@ -85,16 +90,6 @@ class World(KeepsReadOnly):
     moving, fixed : tuple of str
         Names, in the order of the bodies.
     within : float
-
-    Raises
-    ------
-    TypeError
-        Not a body, a name that is no string, not a law.
-    ValueError
-        A name that nobody has, planar bodies among spatial ones or out of z = 0, a group of nobody,
-        a body in a pair with itself, two half-spaces that would be a pair, a number that is
-        negative or NaN, a law with a horizon of its own, a half-space or a rounded body in a pair
-        with a solid.
     """
 
     def __init__(  # noqa: PLR0913 - all but one are keywords with defaults
@@ -156,6 +151,8 @@ class World(KeepsReadOnly):
 
         Rules that name a body that leaves go with it. ``start_from`` takes a state along.
 
+        Raises TypeError, ValueError as `World`; a name that it does not have, or has already.
+
         Parameters
         ----------
         add : mapping of str to Body or Compound, optional
@@ -166,11 +163,6 @@ class World(KeepsReadOnly):
         Returns
         -------
         World
-
-        Raises
-        ------
-        TypeError, ValueError
-            As `World`; a name that it does not have, or has already.
         """
         given = self._arguments(self._given)
         return World(**(changed_arguments(self._given, given, add, remove) | options))
@@ -200,6 +192,9 @@ class World(KeepsReadOnly):
     def start(self, poses: PosesLike, twists: Any = None) -> WorldState:
         """Find all pairs within the horizon, and their distances, at some poses.
 
+        Raises ValueError: a body's pose is missing, or none: its name is told; a planar body out of
+        its plane.
+
         Parameters
         ----------
         poses : (n, 4, 4) array, list of poses, or mapping of str to pose
@@ -211,11 +206,6 @@ class World(KeepsReadOnly):
         -------
         WorldState
             ``world.answer(state)`` is the answer at these poses.
-
-        Raises
-        ------
-        ValueError
-            A body's pose is missing, or none: its name is told; a planar body out of its plane.
         """
         given = self._read(poses)
         return started_state(self.model, given, self._twists(twists, given))
@@ -233,6 +223,8 @@ class World(KeepsReadOnly):
 
         Two worlds have a pair where both have its two body objects under the same names.
 
+        Raises TypeError, ValueError as ``start``; not a world, a state of yet another one.
+
         Parameters
         ----------
         world : World
@@ -248,11 +240,6 @@ class World(KeepsReadOnly):
         -------
         WorldState
             At the time of the other one.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``start``; not a world, a state of yet another one.
         """
         if not isinstance(world, World):
             raise StandoffTypeError(f"{shown(world)} is not a World.", "world", world)
@@ -272,6 +259,9 @@ class World(KeepsReadOnly):
     ) -> tuple[WorldState, WorldAnswer]:
         """All near pairs at the given poses, from the state of the frame before.
 
+        Raises TypeError, ValueError as ``start``; a state of another world, a time that is too long
+        for the law.
+
         Parameters
         ----------
         state : WorldState
@@ -286,11 +276,6 @@ class World(KeepsReadOnly):
         Returns
         -------
         (WorldState, WorldAnswer)
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``start``; a state of another world, a time that is too long for the law.
         """
         self.check_state(state)
         workers = whole_number(workers, "workers")
@@ -304,6 +289,9 @@ class World(KeepsReadOnly):
     ) -> tuple[WorldState, list[WorldAnswer]]:
         """Many frames, each from the state of the one before, as with ``step``.
 
+        Raises TypeError, ValueError as ``step``, with the number of the frame; twists of another
+        number of frames.
+
         Parameters
         ----------
         poses : (m, n, 4, 4) array, or an iterable of what ``step`` reads
@@ -312,11 +300,6 @@ class World(KeepsReadOnly):
         Returns
         -------
         (WorldState, list of WorldAnswer)
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``step``, with the number of the frame; twists of another number of frames.
         """
         poses, twists = frames_of(poses, "poses"), frames_of(twists, "twists")
         check_frames(poses, twists)
@@ -375,9 +358,7 @@ class World(KeepsReadOnly):
     def check_state(self, state: WorldState) -> None:
         """Refuse what is not a state of this world.
 
-        Raises
-        ------
-        TypeError, ValueError
+        Raises TypeError, ValueError.
         """
         check_key(state, self.model.key)
 

@@ -15,12 +15,8 @@ FORMATS = ("png", "svg", "pdf")
 def checked_file(path: object) -> Path:
     """Return the path of a picture's file.
 
-    Raises
-    ------
-    TypeError
-        If it is neither a string nor a Path.
-    ValueError
-        If it is empty, or its extension is not one of `FORMATS`.
+    Raises TypeError if it is neither a string nor a Path. Raises ValueError if it is empty, or its
+    extension is not one of `FORMATS`.
     """
     target = file_name(path)
     if _ending(target) not in FORMATS:
@@ -37,10 +33,7 @@ def drawn(path: object, draw: Callable[[], Any]) -> Any:
     """A figure, also written to a file if one is named, whole or not at all; the name is checked
     before anything is drawn.
 
-    Raises
-    ------
-    TypeError, ValueError
-        As `checked_file`.
+    Raises TypeError, ValueError as `checked_file`.
     """
     target = None if path is None else checked_file(path)
     figure = draw()

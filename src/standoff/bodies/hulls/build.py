@@ -45,16 +45,14 @@ def hull(
 ) -> Packed:
     """The hull of points, (n, 3), swept by a ball.
 
+    Raises BodyError: the points span no volume, are too thin for their extent, or extend over too
+    little.
+
     Parameters
     ----------
     tolerance : how far points that are left out may be above the faces, length; by default those
         alone are left out that are no vertices of the hull.
     word : what a message calls the points.
-
-    Raises
-    ------
-    BodyError
-        The points span no volume, are too thin for their extent, or extend over too little.
     """
     middle = middle_of(points)
     try:
@@ -90,6 +88,8 @@ def solid_body(
 ) -> Packed:
     """The polyhedron with given outlines, whose corners are among the points, (n, 3).
 
+    Raises BodyError: a face whose corners are not in its plane, or a point above one.
+
     Parameters
     ----------
     given : all points that it should be the hull of, each compared with each face; by default
@@ -97,11 +97,6 @@ def solid_body(
     tolerance : how far they may be above a face, length; 1e-6 of the size by default.
     above : how far other points, known to be within its hull, are above a face, length.
     solid : the polyhedron of these outlines, where it is known.
-
-    Raises
-    ------
-    BodyError
-        A face whose corners are not in its plane, or a point above one.
     """
     given = points if given is None else given
     low, high = points.min(axis=0), points.max(axis=0)

@@ -77,10 +77,7 @@ def polyhedron(points: Array, found: Outlines, roundoff: float) -> Polyhedron:
     greatest triangle, above which no point is, moved inwards to its lowest corner: so the face is
     within the hull.
 
-    Raises
-    ------
-    BodyError
-        A face whose corners are in one line.
+    Raises BodyError: a face whose corners are in one line.
     """
     used, corners = np.unique(found.corners, return_inverse=True)
     vertices, starts = points[used], found.starts

@@ -47,10 +47,8 @@ def unit_of(points: Array, word: str) -> float:
 def hull_triangles(points: Array, word: str) -> Triangles:
     """The facets of the hull of points, (n, 3).
 
-    Raises
-    ------
-    BodyError
-        The points span no volume, or extend over too little; `word` is what the message calls them.
+    Raises BodyError: the points span no volume, or extend over too little; `word` is what the
+    message calls them.
     """
     unit = unit_of(points, word)
     try:

@@ -54,6 +54,10 @@ def decomposition(
     The pieces are not the mesh: what they add and lose is in ``fit``. A distance of the pieces is
     no bound for the mesh's own where something is lost.
 
+    Raises BodyError as ``Body.from_mesh``; a piece without volume. Raises ModuleNotFoundError:
+    CoACD is not installed; the message names the extra. Raises ValueError: a concavity that is not
+    from 0.01 to 1, or `most` below 1.
+
     Parameters
     ----------
     mesh : trimesh.Trimesh, path, or (vertices, triangles)
@@ -70,15 +74,6 @@ def decomposition(
     Returns
     -------
     Decomposition
-
-    Raises
-    ------
-    BodyError
-        As ``Body.from_mesh``; a piece without volume.
-    ModuleNotFoundError
-        CoACD is not installed; the message names the extra.
-    ValueError
-        A concavity that is not from 0.01 to 1, or `most` below 1.
 
     References
     ----------

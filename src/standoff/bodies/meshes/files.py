@@ -48,19 +48,15 @@ class MeshFile(NamedTuple):
 def read_meshes(path: Path, unit: str, instead: InsteadOf) -> MeshFile:
     """The meshes of a file as convex bodies, in the file's frame.
 
+    Raises BodyError: no mesh; as ``Body.from_mesh`` and ``so.bodies.decomposition``, with the
+    mesh's name. Raises ModuleNotFoundError, OSError, StandoffError as ``Body.from_mesh`` of a path.
+
     Parameters
     ----------
     path : Path
     unit : str
         One of `METRES`, to which lengths are converted where the file tells theirs.
     instead : "", "hull" or "pieces"
-
-    Raises
-    ------
-    BodyError
-        No mesh; as ``Body.from_mesh`` and ``so.bodies.decomposition``, with the mesh's name.
-    ModuleNotFoundError, OSError, StandoffError
-        As ``Body.from_mesh`` of a path.
     """
     scene = mesh_scene(path)
     told = str(scene.units or "").lower()

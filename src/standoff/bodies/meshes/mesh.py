@@ -139,13 +139,8 @@ def _arrays(mesh: Any) -> tuple[Array, Ints]:
 def mesh_scene(path: Path) -> Any:
     """The meshes of a file with their places, a ``trimesh.Scene``, as the file has them.
 
-    Raises
-    ------
-    ModuleNotFoundError
-        trimesh, or what it needs for this kind of file, is not installed.
-    FileNotFoundError
-    StandoffError
-        A file that it can't read.
+    Raises ModuleNotFoundError: trimesh, or what it needs for this kind of file, is not installed.
+    Raises FileNotFoundError. Raises StandoffError: a file that it can't read.
     """
     with of_extra("trimesh", "meshes"):
         import trimesh

@@ -226,10 +226,7 @@ def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
     surface varies as powers of u and v, and into triangles at their centres, where it varies as
     powers of both.
 
-    Raises
-    ------
-    StandoffError
-        A face with edges other than those of an octant.
+    Raises StandoffError: a face with edges other than those of an octant.
     """
     signs: tuple[float, ...] = (1.0, -1.0)
     if loop:

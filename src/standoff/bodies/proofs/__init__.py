@@ -42,18 +42,14 @@ PROOFS: dict[str, Callable[[Any, int | None], PatchProof]] = {
 def prove_patch(surface: Surface, outward: int | None = None) -> PatchProof:
     """Prove that a patch is convex, or bound by how much it is not.
 
+    Raises TypeError: not a surface, or a profile of a kind without a proof. Raises ValueError: a
+    NURBS, or a profile, that may be creased inside.
+
     Parameters
     ----------
     surface : the patch with its domain.
     outward : +1 if f_u x f_v points out of the body, -1 if into it; if not given, the side to which
         the patch bulges.
-
-    Raises
-    ------
-    TypeError
-        Not a surface, or a profile of a kind without a proof.
-    ValueError
-        A NURBS, or a profile, that may be creased inside.
     """
     given: Any = surface
     if not isinstance(given, Surface):

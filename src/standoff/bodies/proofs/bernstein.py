@@ -78,16 +78,14 @@ class SpanBound:
 def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
     """Prove that a NURBS or rational Bezier patch is convex, or bound by how much it is not.
 
+    Raises ValueError: a knot where the surface may be creased: a proof needs each smooth part
+    separately.
+
     Parameters
     ----------
     surface : of any degree, and at least C1 inside its domain.
     outward : +1 if f_u x f_v points outward, -1 if inward; if not given, the side to which the
         patch bulges more.
-
-    Raises
-    ------
-    ValueError
-        A knot where the surface may be creased: a proof needs each smooth part separately.
     """
     _refuse_creases(surface)
     proof, bent = _proven(surface, outward, spare=False)

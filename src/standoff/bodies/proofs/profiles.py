@@ -36,17 +36,13 @@ INNER = (0.125, 0.375, 0.625, 0.875)
 def prove_swept(surface: Revolution | Extrusion, outward: int | None = None) -> PatchProof:
     """Prove that a swept surface is convex, or bound by how much it is not.
 
+    Raises TypeError: a kind of profile without a proof. Raises ValueError: a profile that may be
+    creased inside.
+
     Parameters
     ----------
     surface : finite in both parameters.
     outward : as in ``prove_patch``.
-
-    Raises
-    ------
-    TypeError
-        A kind of profile without a proof.
-    ValueError
-        A profile that may be creased inside.
     """
     if isinstance(surface.profile, FormulaCurve):
         return interval.prove(_formula(surface, surface.profile), outward)
@@ -159,12 +155,8 @@ def rational_pieces(
 
     spare : also cut at redundant knots of a spline.
 
-    Raises
-    ------
-    TypeError
-        A kind of curve that is not rational.
-    ValueError
-        A knot where it may be creased.
+    Raises TypeError: a kind of curve that is not rational. Raises ValueError: a knot where it may
+    be creased.
     """
     if isinstance(curve, Line):
         ends = np.array([curve.point(first), curve.point(last)])

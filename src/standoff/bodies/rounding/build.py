@@ -40,10 +40,7 @@ BY_RULE = (L.PLANE, L.SPHERE, L.CYLINDER, L.CONE)
 def rounded_boundary(body: Body) -> Rounded:
     """The boundary of a bounded spatial body with a radius.
 
-    Raises
-    ------
-    BodyError
-        A face or an edge of the core that no exact kind is at the radius from.
+    Raises BodyError: a face or an edge of the core that no exact kind is at the radius from.
     """
     return _Builder(body).built()
 

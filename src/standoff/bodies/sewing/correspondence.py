@@ -60,10 +60,7 @@ def isoline(side: Side) -> Pcurve:
 def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
     """The second stretch's parameter as a function of the first one's.
 
-    Raises
-    ------
-    BodyError
-        The second stretch runs back and forth along the first.
+    Raises BodyError: the second stretch runs back and forth along the first.
     """
     sense = 1 if one.first == other.first else -1
     a, b = one.side.first, one.side.last

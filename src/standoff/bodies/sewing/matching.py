@@ -51,12 +51,8 @@ class OpenShell(Exception):
 def match(stretches: Sequence[Stretch], tolerance: float) -> list[tuple[Stretch, Stretch]]:
     """Pairs of stretches that lie along each other.
 
-    Raises
-    ------
-    OpenShell
-        Stretches that lie along no other.
-    BodyError
-        A stretch that lies along more than one.
+    Raises OpenShell: stretches that lie along no other. Raises BodyError: a stretch that lies along
+    more than one.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, s in enumerate(stretches):

@@ -55,16 +55,14 @@ class Sewn:
 def sew(patches: Sequence[Any], tolerance: float | None = None, *, several: bool = False) -> Sewn:
     """Join patches along their sides into a closed shell that faces outward.
 
+    Raises BodyError: sides that match none or several, two shells, no volume; the message names the
+    patches.
+
     Parameters
     ----------
     patches : surfaces with a finite domain.
     tolerance : how far joined sides may be apart, length; None: SEWING_TOLERANCE of the size.
     several : they may close several shells, each of which is made to face outward.
-
-    Raises
-    ------
-    BodyError
-        Sides that match none or several, two shells, no volume; the message names the patches.
     """
     given: Any = patches
     no_list = isinstance(given, np.ndarray) and given.ndim == 0

@@ -17,6 +17,9 @@ def by_position(
 ) -> dict[str, Any]:
     """Return the arguments of a shape by name.
 
+    Raises StandoffTypeError: an argument that is missing or given twice, or too many positional
+    arguments.
+
     Parameters
     ----------
     shape : str
@@ -29,11 +32,6 @@ def by_position(
         that is given as a whole.
     named : mapping
         The keyword arguments; None if one is not given.
-
-    Raises
-    ------
-    StandoffTypeError
-        An argument that is missing or given twice, or too many positional arguments.
     """
     found = {name: value for name, value in named.items() if value is not None}
     rest = list(given)

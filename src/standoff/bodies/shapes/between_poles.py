@@ -31,6 +31,9 @@ SLENDER = 0.1
 def spindle(radius: float, length: float, patches: int = 3, *, rounding: float = 0.0) -> Body:
     """A circular arc rotated about its chord: smooth except for its two pointed poles.
 
+    Raises BodyError: the arc is a semicircle or more; `patches` is not a whole number from 3 to
+    1000. Raises ValueError: a length that is not finite or not positive, a negative rounding.
+
     Parameters
     ----------
     radius : float
@@ -45,13 +48,6 @@ def spindle(radius: float, length: float, patches: int = 3, *, rounding: float =
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        The arc is a semicircle or more; `patches` is not a whole number from 3 to 1000.
-    ValueError
-        A length that is not finite or not positive, a negative rounding.
     """
     bulge, half = _bulge(radius, length, "spindle")
     n = _patches(patches, "spindle")
@@ -75,6 +71,9 @@ def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.
     Its sharp edges are circular arcs from pole to pole. Between them are cylindrical patches with
     horizontal rulings. The first edge is in the half-plane y = 0, x >= 0.
 
+    Raises BodyError: the arcs are semicircles or more; `patches` is not a whole number from 3 to
+    1000. Raises ValueError: a length that is not finite or not positive, a negative rounding.
+
     Parameters
     ----------
     radius : float
@@ -89,13 +88,6 @@ def gore(radius: float, height: float, patches: int = 4, *, rounding: float = 0.
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        The arcs are semicircles or more; `patches` is not a whole number from 3 to 1000.
-    ValueError
-        A length that is not finite or not positive, a negative rounding.
     """
     bulge, half = _bulge(radius, height, "gore")
     n = _patches(patches, "gore")

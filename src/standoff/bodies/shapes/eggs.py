@@ -35,6 +35,9 @@ def egg(radius: float, length: float, taper: float = 0.4, *, rounding: float = 0
     half the length. It is a rational surface of degree 4: two polar caps of degree (4, 4) and a
     revolved curve of degree 4 between them.
 
+    Raises BodyError: |taper| above 0.7. Raises ValueError: a number that is not finite, a length
+    that is not positive, a negative rounding.
+
     Parameters
     ----------
     radius : float
@@ -49,13 +52,6 @@ def egg(radius: float, length: float, taper: float = 0.4, *, rounding: float = 0
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        |taper| above 0.7.
-    ValueError
-        A number that is not finite, a length that is not positive, a negative rounding.
 
     Notes
     -----

@@ -21,6 +21,9 @@ def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     The centres are -offset (cos 120°i, sin 120°i, 0), i = 0, 1, 2. Three spherical faces, three
     edges, two vertices.
 
+    Raises ValueError: a number that is not finite or not positive; an offset with which the lens is
+    empty, too thin or too close to a ball; a rounding that is negative.
+
     Parameters
     ----------
     radius : float
@@ -34,12 +37,6 @@ def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A number that is not finite or not positive; an offset with which the lens is empty, too
-        thin or too close to a ball; a rounding that is negative.
     """
     r, c = magnitude(radius, "radius"), magnitude(offset, "offset")
     rounding = magnitude_or_zero(rounding, "rounding")

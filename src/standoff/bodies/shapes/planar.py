@@ -18,6 +18,10 @@ def planar_loop(curves: Sequence[Curve], rounding: float = 0.0) -> Body:
 
     A single closed conic (an ellipse) is a loop too.
 
+    Raises BodyError: fewer than two open curves, ends that do not meet, a loop that leaves z = 0 or
+    is not convex. Raises TypeError: not a sequence, or something in it is not a `Curve`. Raises
+    ValueError: a rounding that is negative or not finite.
+
     Parameters
     ----------
     curves : sequence of Curve
@@ -30,16 +34,6 @@ def planar_loop(curves: Sequence[Curve], rounding: float = 0.0) -> Body:
     -------
     Body
         Planar: its partner must be planar too, or a point or segment in z = 0.
-
-    Raises
-    ------
-    BodyError
-        Fewer than two open curves, ends that do not meet, a loop that leaves z = 0 or is not
-        convex.
-    TypeError
-        Not a sequence, or something in it is not a `Curve`.
-    ValueError
-        A rounding that is negative or not finite.
     """
     curves = parts_of(curves, "curves")
     for k, curve in enumerate(curves):

@@ -17,6 +17,8 @@ from standoff.geometry.validation import Array, vector3
 def point(*, rounding: float = 0.0) -> Body:
     """The origin, as a body of one vertex.
 
+    Raises ValueError: a rounding that is negative or not finite.
+
     Parameters
     ----------
     rounding : float
@@ -25,11 +27,6 @@ def point(*, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A rounding that is negative or not finite.
     """
     radius = magnitude_or_zero(rounding, "rounding")
     return Body.from_brep([np.zeros(3)], rounding=radius, name="sphere" if radius else "point")
@@ -52,6 +49,10 @@ def segment(
 ) -> Body:
     """A segment of the z axis, centred; or the one from `start` to `end`.
 
+    Raises TypeError: neither a length nor both ends, or all of them. Raises ValueError: a number
+    that is not finite, a length or rounding that is negative, or beyond 1e50, or between 0 and
+    1e-50.
+
     Parameters
     ----------
     length : float
@@ -65,14 +66,6 @@ def segment(
     Returns
     -------
     Body
-
-    Raises
-    ------
-    TypeError
-        Neither a length nor both ends, or all of them.
-    ValueError
-        A number that is not finite, a length or rounding that is negative, or beyond 1e50, or
-        between 0 and 1e-50.
     """
     if start is None and end is not None:
         start, length = length, None
@@ -91,6 +84,8 @@ def segment(
 def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     """A ball about the origin: a point with a swept radius.
 
+    Raises ValueError: a number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
+
     Parameters
     ----------
     radius : float
@@ -101,11 +96,6 @@ def sphere(radius: float, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
     """
     return point(
         rounding=magnitude_or_zero(radius, "radius") + magnitude_or_zero(rounding, "rounding")
@@ -114,6 +104,8 @@ def sphere(radius: float, *, rounding: float = 0.0) -> Body:
 
 def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     """A segment of the z axis with a swept radius, centred.
+
+    Raises ValueError: a number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
 
     Parameters
     ----------
@@ -127,11 +119,6 @@ def capsule(radius: float, length: float, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A number that is not finite, negative, beyond 1e50, or between 0 and 1e-50.
     """
     swept = magnitude_or_zero(radius, "radius") + magnitude_or_zero(rounding, "rounding")
     return segment(length, rounding=swept)

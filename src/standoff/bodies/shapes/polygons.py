@@ -25,6 +25,9 @@ def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
     Face 0 is the side from which the vertices run counterclockwise, face 1 the other. The rim is
     n faces without width; its edges exist twice, once for each side.
 
+    Raises BodyError: the points are on one line, or not in one plane. Raises ValueError: a wrong
+    shape, a number that is not finite or beyond 1e50, a negative rounding.
+
     Parameters
     ----------
     vertices : (n, 3) array_like
@@ -37,13 +40,6 @@ def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        The points are on one line, or not in one plane.
-    ValueError
-        A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
     radius = magnitude_or_zero(rounding, "rounding")

@@ -56,6 +56,10 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     It keeps its size when it is rounded: its core, smaller by 2 rounding along each axis, is swept
     by a ball.
 
+    Raises BodyError: a core that is flat, thinner than 5e-15 of its length. Raises TypeError: a
+    size that is missing, or given twice. Raises ValueError: a number that is not finite, a length
+    that is not positive, a rounding that is negative or leaves no core.
+
     Parameters
     ----------
     *lengths : float
@@ -68,16 +72,6 @@ def box(*lengths: Any, size: Any = None, rounding: float | None = None) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        A core that is flat, thinner than 5e-15 of its length.
-    TypeError
-        A size that is missing, or given twice.
-    ValueError
-        A number that is not finite, a length that is not positive, a rounding that is negative or
-        leaves no core.
     """
     named = {"size": size, "rounding": rounding}
     given = by_position("box", lengths, {"size": 3, "rounding": 0}, named)
@@ -110,6 +104,10 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
     computed relative to their middle, as ``body.check().notes`` says, and answers are as accurate
     as the vertices' own digits.
 
+    Raises BodyError: the points span no volume, are too thin for their extent, or extend over less
+    than 1e-50. Raises ValueError: a wrong shape, a number that is not finite or beyond 1e50, a
+    negative rounding.
+
     Parameters
     ----------
     vertices : (n, 3) array_like
@@ -120,13 +118,6 @@ def polytope(vertices: Any, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        The points span no volume, are too thin for their extent, or extend over less than 1e-50.
-    ValueError
-        A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
     radius = magnitude_or_zero(rounding, "rounding")
@@ -140,6 +131,10 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     core, the polytope with all its planes moved inwards by `rounding`, is swept by the ball, so
     that the blends are exact cylinders and spheres. The planes stay where they were.
 
+    Raises BodyError: the points lie in a plane or are too thin for their extent, or `rounding`
+    leaves no core. Raises ValueError: a wrong shape, a number that is not finite or beyond 1e50, a
+    negative rounding.
+
     Parameters
     ----------
     vertices : (n, 3) array_like
@@ -150,13 +145,6 @@ def rounded_polytope(vertices: Any, rounding: float) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        The points lie in a plane or are too thin for their extent, or `rounding` leaves no core.
-    ValueError
-        A wrong shape, a number that is not finite or beyond 1e50, a negative rounding.
     """
     points = finite(vertices, "vertices", (-1, 3))
     rounding = magnitude_or_zero(rounding, "rounding")
@@ -191,12 +179,8 @@ def _core(points: Array, faces: Outlines, rounding: float) -> Array:
 def _inner_vertices(normals: Array, offsets: Array, rounding: float, unit: float) -> Array:
     """The vertices of normals @ x <= offsets - rounding, (n, 3); all lengths in `unit`.
 
-    Raises
-    ------
-    BodyError
-        The rounding leaves no core.
-    QhullError
-        The vertices are lost in roundoff.
+    Raises BodyError: the rounding leaves no core. Raises QhullError: the vertices are lost in
+    roundoff.
     """
     # the inscribed ball: the greatest r with normals @ x + r <= offsets
     columns = np.column_stack([normals, np.ones(len(normals))])

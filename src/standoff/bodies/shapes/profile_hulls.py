@@ -63,11 +63,8 @@ class _Run:
 def hull_chain(curve: Curve) -> Chain:
     """The right side of the hull of a curve and its mirror image.
 
-    Raises
-    ------
-    BodyError
-        The curve lies on the axis or along a line through it that spans no area, or its hull is
-        finer than the samples.
+    Raises BodyError: the curve lies on the axis or along a line through it that spans no area, or
+    its hull is finer than the samples.
     """
     if curve.closed and not isinstance(curve, ConicArc):
         raise BodyError(

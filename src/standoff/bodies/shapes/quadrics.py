@@ -32,6 +32,10 @@ def ellipsoid(semi_axes: Any, *, rounding: float = ...) -> Body: ...
 def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     """An ellipsoid about the origin: one smooth face with an atlas of six charts.
 
+    Raises TypeError: Semi-axes that are missing, or given twice. Raises ValueError: a number that
+    is not finite, a semi-axis that is not positive, a rounding that is negative; a length beyond
+    1e50 or below 1e-50.
+
     Parameters
     ----------
     *axes : float
@@ -44,14 +48,6 @@ def ellipsoid(*axes: Any, semi_axes: Any = None, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    TypeError
-        Semi-axes that are missing, or given twice.
-    ValueError
-        A number that is not finite, a semi-axis that is not positive, a rounding that is
-        negative; a length beyond 1e50 or below 1e-50.
     """
     given = by_position("ellipsoid", axes, {"semi_axes": 3}, {"semi_axes": semi_axes})
     linear = np.diag(positive_numbers(given["semi_axes"], "semi_axes", 3))
@@ -67,6 +63,9 @@ def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
 
     It has two discs and a side without a seam; the rims are closed edges.
 
+    Raises ValueError: a number that is not finite, a length that is not positive, a rounding that
+    is negative; a length beyond 1e50 or below 1e-50.
+
     Parameters
     ----------
     radius : float
@@ -79,12 +78,6 @@ def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A number that is not finite, a length that is not positive, a rounding that is negative;
-        a length beyond 1e50 or below 1e-50.
     """
     r, half = magnitude(radius, "radius"), 0.5 * magnitude(height, "height")
     rounding = magnitude_or_zero(rounding, "rounding")
@@ -102,6 +95,9 @@ def cylinder(radius: float, height: float, *, rounding: float = 0.0) -> Body:
 def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     """A cone about the axis z: its base at -height/2, its apex at +height/2.
 
+    Raises ValueError: a number that is not finite, a length that is not positive, a rounding that
+    is negative; a length beyond 1e50 or below 1e-50.
+
     Parameters
     ----------
     radius : float
@@ -114,12 +110,6 @@ def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A number that is not finite, a length that is not positive, a rounding that is negative;
-        a length beyond 1e50 or below 1e-50.
     """
     r, height = magnitude(radius, "radius"), magnitude(height, "height")
     rounding = magnitude_or_zero(rounding, "rounding")
@@ -141,6 +131,9 @@ def cone(radius: float, height: float, *, rounding: float = 0.0) -> Body:
 def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     """The part z >= offset of a ball about the origin: a disc and a spherical face.
 
+    Raises ValueError: a number that is not finite, a radius that is not positive, an offset that
+    leaves nothing or the whole ball; a rounding that is negative.
+
     Parameters
     ----------
     radius : float
@@ -153,12 +146,6 @@ def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    ValueError
-        A number that is not finite, a radius that is not positive, an offset that leaves nothing
-        or the whole ball; a rounding that is negative.
     """
     r = magnitude(radius, "radius")
     rounding = magnitude_or_zero(rounding, "rounding")
@@ -188,6 +175,9 @@ def cap(radius: float, offset: float, *, rounding: float = 0.0) -> Body:
 def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: float = 0.0) -> Body:
     """The half-space normal · x <= offset, by default z <= 0: one plane without a boundary.
 
+    Raises ValueError: a normal of length zero; a number that is not finite; a rounding that is
+    negative.
+
     Parameters
     ----------
     normal : (3,) array_like
@@ -201,11 +191,6 @@ def halfspace(normal: Any = (0.0, 0.0, 1.0), offset: float = 0.0, *, rounding: f
     -------
     Body
         Unbounded: its partner must be bounded.
-
-    Raises
-    ------
-    ValueError
-        A normal of length zero; a number that is not finite; a rounding that is negative.
     """
     axes, shift = _plane_of(vector3(normal, "normal"), number(offset, "offset"))
     plane = Plane.through(shift, axes[0], axes[1])

@@ -22,6 +22,10 @@ def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
     Arcs of the curve that are on the hull stay exact. Concave parts are bridged by cones and
     cylinders that touch the arcs, and ends off the axis are closed by discs.
 
+    Raises BodyError: the curve spans no volume; its hull is finer than 2048 samples; it is a closed
+    curve of another kind. Raises ValueError: it is not a `Curve`, leaves the plane y = 0 or crosses
+    the axis; a negative rounding.
+
     Parameters
     ----------
     curve : Curve
@@ -33,14 +37,6 @@ def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:
     Returns
     -------
     Body
-
-    Raises
-    ------
-    BodyError
-        The curve spans no volume; its hull is finer than 2048 samples; it is a closed curve of
-        another kind.
-    ValueError
-        It is not a `Curve`, leaves the plane y = 0 or crosses the axis; a negative rounding.
     """
     rounding = magnitude_or_zero(rounding, "rounding")
     whole = Revolution(curve)

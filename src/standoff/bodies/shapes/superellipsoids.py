@@ -45,6 +45,10 @@ def superellipsoid(
     to 1 the surface is one smooth face. Above 1 its curvature is infinite on coordinate planes, and
     it is made of eight octants, whose seams are edges of two halves each.
 
+    Raises TypeError: Semi-axes or exponents that are missing, or given twice. Raises ValueError: a
+    number that is not finite, a semi-axis that is not positive, an exponent out of range, a
+    rounding that is negative.
+
     Parameters
     ----------
     *numbers : float
@@ -59,14 +63,6 @@ def superellipsoid(
     Returns
     -------
     Body
-
-    Raises
-    ------
-    TypeError
-        Semi-axes or exponents that are missing, or given twice.
-    ValueError
-        A number that is not finite, a semi-axis that is not positive, an exponent out of range, a
-        rounding that is negative.
     """
     counts = {"semi_axes": 3, "exponents": 2}
     named = {"semi_axes": semi_axes, "exponents": exponents}

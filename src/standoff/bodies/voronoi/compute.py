@@ -24,6 +24,10 @@ def voronoi_regions(
     they are separated by its medial axis. The trackers do not need any of this. Vertices and edges
     where the normal turns by less than 1e-5 rad count as smooth.
 
+    Raises VoronoiError: the medial axis did not pass its own check by brute force, or a junction
+    was not found. Raises TypeError: not a body. Raises ValueError: NaN, infinite or negative
+    numbers, or a tolerance too fine.
+
     Parameters
     ----------
     body : Body
@@ -35,15 +39,6 @@ def voronoi_regions(
     Returns
     -------
     VoronoiRegions
-
-    Raises
-    ------
-    VoronoiError
-        The medial axis did not pass its own check by brute force, or a junction was not found.
-    TypeError
-        Not a body.
-    ValueError
-        NaN, infinite or negative numbers, or a tolerance too fine.
 
     Notes
     -----

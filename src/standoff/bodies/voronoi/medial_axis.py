@@ -92,10 +92,7 @@ class Way:
 def trace_axis(outline: Outline, tolerance: float) -> tuple[list[Trace], list[Node]]:
     """All branches and nodes; for a disc, no branch and one node.
 
-    Raises
-    ------
-    VoronoiError
-        A junction was not found.
+    Raises VoronoiError: a junction was not found.
     """
     leaves = leaves_of(outline)
     if not leaves:

@@ -122,10 +122,7 @@ class Outline(KeepsReadOnly):
 def outline_of(body: Body) -> Outline:
     """The outline of a planar body's core.
 
-    Raises
-    ------
-    BodyError
-        The body is not planar.
+    Raises BodyError: the body is not planar.
     """
     if body.dimension != 2:
         raise BodyError(

@@ -131,6 +131,8 @@ class VoronoiRegions(KeepsReadOnly):
     def feature_at(self, point: ArrayLike) -> Feature:
         """The feature in whose region a point lies, found without any tracker.
 
+        Raises ValueError: not a point, a point off a planar body's plane, or inside a spatial body.
+
         Parameters
         ----------
         point : (2,) or (3,) array_like, body frame
@@ -140,10 +142,5 @@ class VoronoiRegions(KeepsReadOnly):
         -------
         Feature
             On a boundary between regions, any of those that meet there.
-
-        Raises
-        ------
-        ValueError
-            Not a point, a point off a planar body's plane, or inside a spatial body.
         """
         return nearest_feature(self.body, point)

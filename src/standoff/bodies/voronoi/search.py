@@ -64,10 +64,7 @@ class Boundary(KeepsReadOnly):
     def nearest(self, x: Array) -> Feature:
         """The feature nearest to a point (3,) outside.
 
-        Raises
-        ------
-        ValueError
-            The point lies inside.
+        Raises ValueError: the point lies inside.
         """
         found = [*self._vertices(x), *self._edges(x), *self._faces(x)]
         best = min(found, key=lambda c: c.distance)

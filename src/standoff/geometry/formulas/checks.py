@@ -38,10 +38,7 @@ MOST_BOXES = 8_000
 def limits(domain: Any, names: tuple[str, ...], what: str) -> tuple[float, ...]:
     """(u0, u1, v0, v1) or (first, last) as floats.
 
-    Raises
-    ------
-    FormulaError
-        Not finite, or empty.
+    Raises FormulaError: not finite, or empty.
     """
     wanted = "(" + ", ".join(names) + ")"
     name = "domain" if what.endswith(".domain") else ""
@@ -68,11 +65,8 @@ def read_formula(
 ) -> Formula:
     """Three coordinates, read and compiled.
 
-    Raises
-    ------
-    FormulaError
-        They cannot be read, or do not contain one of the variables: a point, or a curve instead of
-        a patch.
+    Raises FormulaError: they cannot be read, or do not contain one of the variables: a point, or a
+    curve instead of a patch.
     """
     values = parameter_values(parameters, variables)
     expressions = tuple(

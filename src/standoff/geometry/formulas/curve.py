@@ -30,6 +30,9 @@ BOX_GRID = 256
 class FormulaCurve(Curve):
     """A curve from formulas in t: x(t), y(t), z(t), lengths in the body's frame.
 
+    Raises FormulaError as for `FormulaSurface`; a tangent that vanishes. Raises ImportError: SymPy
+    is not installed: it comes with the extra `formulas`.
+
     Parameters
     ----------
     x, y, z : str, SymPy expression or number
@@ -37,13 +40,6 @@ class FormulaCurve(Curve):
     first, last : float
         The range of t.
     parameters : {name: number}, optional
-
-    Raises
-    ------
-    FormulaError
-        As for `FormulaSurface`; a tangent that vanishes.
-    ImportError
-        SymPy is not installed: it comes with the extra `formulas`.
 
     Notes
     -----

@@ -40,10 +40,7 @@ GREATEST_EXPONENT = 64
 def sympy_module() -> Any:
     """SymPy, imported when it is first needed.
 
-    Raises
-    ------
-    ImportError
-        It is not installed.
+    Raises ImportError: it is not installed.
     """
     return _extra("sympy", "SymPy")
 
@@ -51,10 +48,7 @@ def sympy_module() -> Any:
 def flint_module() -> Any:
     """python-flint, imported when it is first needed.
 
-    Raises
-    ------
-    ImportError
-        It is not installed.
+    Raises ImportError: it is not installed.
     """
     return _extra("flint", "python-flint")
 
@@ -73,10 +67,8 @@ def parameter_values(
 ) -> dict[str, Any]:
     """The parameters as exact fractions, by name.
 
-    Raises
-    ------
-    FormulaError
-        A name that is not an identifier or is taken, a value that is not a finite number.
+    Raises FormulaError: a name that is not an identifier or is taken, a value that is not a finite
+    number.
     """
     taken = {*variables, *FUNCTIONS, *CONSTANTS}
     values = {}
@@ -124,17 +116,14 @@ def read_expression(
 ) -> Any:
     """A formula as a SymPy expression in plain symbols named as `variables`.
 
+    Raises FormulaError: unknown symbols (with the nearest known one), bad syntax (with the
+    position), anything that is not arithmetic, numbers beyond float64.
+
     Parameters
     ----------
     given : str, number or sympy.Expr
     name : what it is the formula of ("x"), for messages
     parameters : values by name, as `parameter_values` gives them
-
-    Raises
-    ------
-    FormulaError
-        Unknown symbols (with the nearest known one), bad syntax (with the position), anything
-        that is not arithmetic, numbers beyond float64.
     """
     sympy = sympy_module()
     symbols = {v: sympy.Symbol(v) for v in variables}

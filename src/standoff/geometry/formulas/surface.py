@@ -34,6 +34,11 @@ ENDS = ("u0", "u1", "v0", "v1")
 class FormulaSurface(Surface):
     """A patch from formulas in u and v: x(u, v), y(u, v), z(u, v), lengths in the body's frame.
 
+    Raises FormulaError: an unknown symbol, bad syntax or anything but arithmetic; an empty domain;
+    a parameter without a value; a pole, or a value that is not real, in the patch (checked by proof
+    over all of it; the place is named); a point or a curve instead of a patch; a normal that
+    vanishes inside. Raises ImportError: SymPy is not installed: it comes with the extra `formulas`.
+
     Parameters
     ----------
     x, y, z : str, SymPy expression or number
@@ -43,16 +48,6 @@ class FormulaSurface(Surface):
         Ranges of u and v, finite.
     parameters : {name: number}, optional
         They become part of the formula.
-
-    Raises
-    ------
-    FormulaError
-        An unknown symbol, bad syntax or anything but arithmetic; an empty domain; a parameter
-        without a value; a pole, or a value that is not real, in the patch (checked by proof over
-        all of it; the place is named); a point or a curve instead of a patch; a normal that
-        vanishes inside.
-    ImportError
-        SymPy is not installed: it comes with the extra `formulas`.
 
     Notes
     -----
@@ -101,10 +96,7 @@ class FormulaSurface(Surface):
     def restricted(self, u0: float, u1: float, v0: float, v1: float) -> FormulaSurface:
         """The same surface on a smaller domain; parameters stay the same.
 
-        Raises
-        ------
-        FormulaError
-            The domain is empty or leaves the present one.
+        Raises FormulaError: the domain is empty or leaves the present one.
         """
         smaller = limits((u0, u1, v0, v1), ENDS, "FormulaSurface.domain")
         a, b, c, d = self.domain

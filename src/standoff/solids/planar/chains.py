@@ -42,16 +42,13 @@ def chained(curves: list[Curve], limits: tuple[float, float]) -> Chains:
     Ends within the first limit meet. Of those that are left, which would make the outline open,
     ends within the second meet: so details that are smaller than this stay what they are.
 
+    Raises BodyError: an end at which no other curve ends, or more than one, with the place.
+
     Parameters
     ----------
     curves : list of Curve
     limits : (float, float)
         By how much ends may miss each other, lengths.
-
-    Raises
-    ------
-    BodyError
-        An end at which no other curve ends, or more than one, with the place.
     """
     ends = np.array([end for curve in curves for end in ends_of(curve)])
     partners = _partners(ends, limits)

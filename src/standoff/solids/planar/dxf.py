@@ -76,6 +76,11 @@ def read_dxf(
     of inserted blocks too. They are exact. Curves that meet end to end make a loop, in whatever
     order they are given; loops inside others are holes. Texts, dimensions and hatches are left out.
 
+    Raises ImportError: ezdxf is not installed: it comes with the extra `dxf`. Raises
+    FileNotFoundError: there is no such file. Raises StandoffError: a file that is no DXF, or cut
+    off; an unknown unit. Raises BodyError: nothing that bounds an area, curves that are open,
+    doubled, cross each other, or out of z = 0. The text has the place.
+
     Parameters
     ----------
     path : path
@@ -95,18 +100,6 @@ def read_dxf(
     -------
     Drawing
         A sequence of PlanarSolid, in the order of the drawing, with the unit and a report.
-
-    Raises
-    ------
-    ImportError
-        ezdxf is not installed: it comes with the extra `dxf`.
-    FileNotFoundError
-        There is no such file.
-    StandoffError
-        A file that is no DXF, or cut off; an unknown unit.
-    BodyError
-        Nothing that bounds an area, curves that are open, doubled, cross each other, or out of
-        z = 0. The text has the place.
     """
     wanted = None if unit is None else known_unit(unit)
     factor = None if scale is None else positive(scale, "scale")

@@ -62,10 +62,7 @@ def ranges_over(curve: Curve, first: Array, last: Array) -> Ranges:
 def cut_curve(curve: Curve, at_least: int) -> tuple[Array, Ranges]:
     """Ascending parameters (n + 1,) between the leaves of a curve, and the leaves' bounds.
 
-    Raises
-    ------
-    BodyError
-        A curve whose tangent vanishes.
+    Raises BodyError: a curve whose tangent vanishes.
     """
     form = form_of(curve)
     spans = np.asarray(curve.spans(), dtype=np.float64)

@@ -65,12 +65,8 @@ def size_of(curves: Sequence[Curve], what: str = "the loops") -> float:
 def read_loop(curves: Any, where: str, join: float | None = None) -> Loop:
     """A closed loop of curves that follow each other, each in either direction.
 
-    Raises
-    ------
-    BodyError
-        No curves, one out of z = 0 or of no length, too small a loop, ends that do not meet.
-    TypeError
-        Not a sequence of curves.
+    Raises BodyError: no curves, one out of z = 0 or of no length, too small a loop, ends that do
+    not meet. Raises TypeError: not a sequence of curves.
     """
     found = parts_of(curves, where)
     for k, curve in enumerate(found):
@@ -98,10 +94,7 @@ def _check_flat(curve: Curve, what: str, size: float) -> None:
 def joined(curves: tuple[Curve, ...], where: str, tolerance: float) -> Loop:
     """The loop, with the direction of each curve found from where its ends meet the next.
 
-    Raises
-    ------
-    BodyError
-        Ends that are farther apart than the tolerance, with the place.
+    Raises BodyError: ends that are farther apart than the tolerance, with the place.
     """
     n = len(curves)
     ends = [ends_of(c) for c in curves]

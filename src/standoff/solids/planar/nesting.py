@@ -22,10 +22,7 @@ MOST_LOOKS = 10_000_000
 def turned(loop: Loop, outer: bool) -> Loop:
     """The loop counterclockwise if it is an outer one, else clockwise.
 
-    Raises
-    ------
-    BodyError
-        No area.
+    Raises BodyError: no area.
     """
     area, error = rough_area(loop), 0.0
     if abs(area) <= CLEAR_AREA * size_of(loop.curves) ** 2:
@@ -75,10 +72,7 @@ def oriented(outer: Loop, inner: Sequence[Loop]) -> tuple[Loop, ...]:
     """An outer loop and its holes, each turned; the holes are proven to be inside by one point of
     each, once no loop meets another.
 
-    Raises
-    ------
-    BodyError
-        A hole outside of the outer loop or inside another one.
+    Raises BodyError: a hole outside of the outer loop or inside another one.
     """
     loops = (turned(outer, True), *(turned(loop, False) for loop in inner))
     if not inner:
@@ -103,10 +97,7 @@ def oriented(outer: Loop, inner: Sequence[Loop]) -> tuple[Loop, ...]:
 def nested(loops: Sequence[Loop]) -> list[tuple[Loop, ...]]:
     """The loops of each separate solid, its outer loop first, by how many others each is in.
 
-    Raises
-    ------
-    BodyError
-        Loops that meet.
+    Raises BodyError: loops that meet.
     """
     upright = [turned(loop, True) for loop in loops]
     if len(loops) > 1:

@@ -17,10 +17,8 @@ from standoff.solids.planar.tolerances import NO_CORNER
 def loops_of_body(body: Body) -> list[Curve]:
     """The curves of a planar body's boundary, in order.
 
-    Raises
-    ------
-    BodyError
-        A body without area in the plane, or rounded edges that are neither lines nor arcs.
+    Raises BodyError: a body without area in the plane, or rounded edges that are neither lines nor
+    arcs.
     """
     r = body.radius
     if not body.edge_parts and len(body.vertex_points) == 1 and r > 0.0:

@@ -83,6 +83,10 @@ class PlanarSolid(KeepsReadOnly, Plotted):
     ) -> PlanarSolid:
         """A solid from its loops.
 
+        Raises BodyError: a loop that is open, meets itself or another, has a curve of no length or
+        out of z = 0; a hole outside, or in another hole. The text has the place. Raises TypeError:
+        something that is not a curve.
+
         Parameters
         ----------
         outer : sequence of Curve, or of such sequences
@@ -98,14 +102,6 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         Returns
         -------
         PlanarSolid
-
-        Raises
-        ------
-        BodyError
-            A loop that is open, meets itself or another, has a curve of no length or out of
-            z = 0; a hole outside, or in another hole. The text has the place.
-        TypeError
-            Something that is not a curve.
         """
         given = tuple(outer)
         limit = None if join is None else positive(join, "join")
@@ -128,6 +124,9 @@ class PlanarSolid(KeepsReadOnly, Plotted):
     def from_body(cls, body: Body, *, name: str = "") -> PlanarSolid:
         """A planar convex `Body` as a solid.
 
+        Raises BodyError: a spatial body, one without area, or rounded edges of other kinds. Raises
+        TypeError: not a body.
+
         Parameters
         ----------
         body : Body
@@ -138,13 +137,6 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         Returns
         -------
         PlanarSolid
-
-        Raises
-        ------
-        BodyError
-            A spatial body, one without area, or rounded edges of other kinds.
-        TypeError
-            Not a body.
         """
         if not isinstance(body, Body):
             raise StandoffTypeError(f"{shown(body)} is no Body: give a planar one.", "body", body)
@@ -153,6 +145,8 @@ class PlanarSolid(KeepsReadOnly, Plotted):
     @classmethod
     def of(cls, given: Any, name: str = "solid") -> PlanarSolid:
         """A planar solid as it is, or a planar `Body` as one.
+
+        Raises TypeError: something else. Raises BodyError as `from_body`.
 
         Parameters
         ----------
@@ -163,13 +157,6 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         Returns
         -------
         PlanarSolid
-
-        Raises
-        ------
-        TypeError
-            Something else.
-        BodyError
-            As `from_body`.
         """
         if isinstance(given, PlanarSolid):
             return given
@@ -258,6 +245,8 @@ class PlanarSolid(KeepsReadOnly, Plotted):
 
         Each is proven to 1e-10 of the size: no boundary point is nearer by more.
 
+        Raises ValueError: a wrong shape, numbers that are not finite, points out of z = 0.
+
         Parameters
         ----------
         points : (n, 2) or (n, 3) array_like
@@ -270,11 +259,6 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         (n,) array, or a pair of (n,) and (n, 2) arrays
             Lengths; and unit vectors away from the solid's inside: at points that have several
             nearest boundary points that of one of them, and NaN on the boundary.
-
-        Raises
-        ------
-        ValueError
-            A wrong shape, numbers that are not finite, points out of z = 0.
         """
         at = _points(points)
         distances, inside, feet = self.outline.foot(at, PROVEN_TO * self.size)
@@ -289,6 +273,8 @@ class PlanarSolid(KeepsReadOnly, Plotted):
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Are points inside, or on the boundary?
 
+        Raises ValueError as for `signed_distance`.
+
         Parameters
         ----------
         points : (n, 2) or (n, 3) array_like
@@ -298,11 +284,6 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         -------
         (n,) array of bool
             On the boundary to within 1e-14 of the size counts as inside.
-
-        Raises
-        ------
-        ValueError
-            As for `signed_distance`.
         """
         at = _points(points)
         distances, inside, _ = self.outline.foot(at, PROVEN_TO * self.size)
@@ -345,6 +326,8 @@ def solids_of(
 ) -> tuple[PlanarSolid, ...]:
     """The separate solids that loops make, those inside others being holes.
 
+    Raises BodyError: see `PlanarSolid.from_loops`.
+
     Parameters
     ----------
     loops : sequence of sequences of Curve
@@ -356,11 +339,6 @@ def solids_of(
     Returns
     -------
     tuple of PlanarSolid
-
-    Raises
-    ------
-    BodyError
-        See `PlanarSolid.from_loops`.
     """
     read = [read_loop(each, f"loop {k}", join) for k, each in enumerate(loops)]
     found = enumerate(nested(read))

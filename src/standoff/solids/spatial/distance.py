@@ -48,6 +48,8 @@ def spatial_distance(
 ) -> SolidProximity:
     """The proven distance of two solids at poses.
 
+    Raises StandoffError: something that is no solid, or no pose.
+
     Parameters
     ----------
     a, b : Solid, Boundary or Body
@@ -60,11 +62,6 @@ def spatial_distance(
     Returns
     -------
     SolidProximity
-
-    Raises
-    ------
-    StandoffError
-        Something that is no solid, or no pose.
     """
     within, tolerance, minima, deadline, patch = asked
     placed = [Pose.identity() if pose is None else Pose.of(pose) for pose in (pose_a, pose_b)]

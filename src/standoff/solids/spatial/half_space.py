@@ -140,10 +140,7 @@ class HalfSpaceBeside(SolidModel):
 def of_pair(own: SolidModel, pose: Pose, other: SolidModel, pose_other: Pose) -> SolidModel:
     """A solid as it is; a half-space as the part of its plane beside the other solid.
 
-    Raises
-    ------
-    StandoffError
-        Two half-spaces.
+    Raises StandoffError: two half-spaces.
     """
     if not isinstance(own, HalfSpace):
         return own

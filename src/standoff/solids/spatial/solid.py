@@ -43,6 +43,9 @@ class Solid(SolidModel, Plotted):
     It wraps a `Boundary`, or a `Body`, whose faces may bend either way and have holes, and whose
     inner shells are cavities. Of a `Body` with a radius it has the boundary that is swept.
 
+    Raises StandoffError: a boundary of another kind, a volume or an area that differs, or a
+    boundary that crosses itself; the error's `value` is then what `self_intersections` would be.
+
     Parameters
     ----------
     boundary : Boundary or Body
@@ -51,12 +54,6 @@ class Solid(SolidModel, Plotted):
         Of the maker, length cubed and squared: compared with those of the boundary.
     relative : float, optional
         How far they may differ, as a part of them.
-
-    Raises
-    ------
-    StandoffError
-        A boundary of another kind, a volume or an area that differs, or a boundary that crosses
-        itself; the error's `value` is then what `self_intersections` would be.
 
     Attributes
     ----------
@@ -100,14 +97,11 @@ class Solid(SolidModel, Plotted):
     ) -> Solid:
         """A solid from its vertices, edges and faces, as ``Boundary.from_brep``.
 
+        Raises BodyError as for ``Boundary.from_brep``.
+
         Returns
         -------
         Solid
-
-        Raises
-        ------
-        BodyError
-            As for ``Boundary.from_brep``.
         """
         made = Boundary.from_brep(
             vertices, edges, faces, senses=senses, tolerance=tolerance, name=name
@@ -120,14 +114,11 @@ class Solid(SolidModel, Plotted):
     ) -> Solid:
         """A solid from patches that close one or more shells, as ``Boundary.from_patches``.
 
+        Raises BodyError as for ``Boundary.from_patches``.
+
         Returns
         -------
         Solid
-
-        Raises
-        ------
-        BodyError
-            As for ``Boundary.from_patches``.
         """
         return Solid(Boundary.from_patches(patches, tolerance=tolerance, name=name))
 
@@ -192,6 +183,8 @@ class Solid(SolidModel, Plotted):
     def contains(self, points: Any) -> NDArray[np.bool_]:
         """Which points are inside the solid or on its boundary.
 
+        Raises StandoffError: a wrong shape, or a number that is not finite.
+
         Parameters
         ----------
         points : (n, 3) array_like
@@ -200,16 +193,13 @@ class Solid(SolidModel, Plotted):
         Returns
         -------
         (n,) array of bool
-
-        Raises
-        ------
-        StandoffError
-            A wrong shape, or a number that is not finite.
         """
         return np.asarray(signed_distances(self, finite(points, "points", (-1, 3))).distance <= 0.0)
 
     def signed_distance(self, points: Any) -> Any:
         """How far points are from the boundary, negative inside, with proven bounds.
+
+        Raises StandoffError: a wrong shape, or a number that is not finite.
 
         Parameters
         ----------
@@ -221,10 +211,5 @@ class Solid(SolidModel, Plotted):
         PointDistances
             Arrays: `distance` (n,), `lower_bound` and `upper_bound` (n,) of it, `gradient` (n, 3),
             `nearest` (n, 3), `converged` and `smooth` (n,).
-
-        Raises
-        ------
-        StandoffError
-            A wrong shape, or a number that is not finite.
         """
         return signed_distances(self, finite(points, "points", (-1, 3)))

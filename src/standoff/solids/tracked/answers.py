@@ -111,10 +111,7 @@ class SolidAnswers(KeepsReadOnly):
     def minima(self) -> LocalMinima:
         """All local minima of all frames, in arrays.
 
-        Raises
-        ------
-        StandoffError
-            The tracker was made without ``minima=``.
+        Raises StandoffError: the tracker was made without ``minima=``.
         """
         return self._told[0]
 
@@ -122,10 +119,7 @@ class SolidAnswers(KeepsReadOnly):
     def events(self) -> tuple[MinimumEvent, ...]:
         """Which minima begin, end and go to another feature, and when another is the nearest.
 
-        Raises
-        ------
-        StandoffError
-            The tracker was made without ``minima=``.
+        Raises StandoffError: the tracker was made without ``minima=``.
         """
         return self._told[1]
 
@@ -136,6 +130,11 @@ class SolidAnswers(KeepsReadOnly):
     def plot(self, path: str | Path | None = None) -> Figure:
         """Draw how far each local minimum is apart, over the frames, where it begins and ends.
 
+        Raises ModuleNotFoundError if matplotlib is not installed; the message names the extra.
+        Raises StandoffError: the tracker was made without ``minima=``; or the file has another
+        ending. Raises TypeError if `path` is neither a string nor a Path. Raises OSError if the
+        file cannot be written.
+
         Parameters
         ----------
         path : str or path, optional
@@ -144,17 +143,6 @@ class SolidAnswers(KeepsReadOnly):
         Returns
         -------
         matplotlib.figure.Figure
-
-        Raises
-        ------
-        ModuleNotFoundError
-            If matplotlib is not installed; the message names the extra.
-        StandoffError
-            The tracker was made without ``minima=``; or the file has another ending.
-        TypeError
-            If `path` is neither a string nor a Path.
-        OSError
-            If the file cannot be written.
         """
         from standoff.bodies.drawing.files import drawn
 

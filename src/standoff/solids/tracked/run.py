@@ -123,10 +123,7 @@ class Run:
     def minima_told(self) -> tuple[LocalMinima, tuple[MinimumEvent, ...]]:
         """The local minima of all frames, and what becomes of them.
 
-        Raises
-        ------
-        StandoffError
-            None were asked.
+        Raises StandoffError: none were asked.
         """
         length = self.asks.options.minima
         if length is None:

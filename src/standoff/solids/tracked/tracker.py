@@ -49,6 +49,9 @@ class SolidTracker(KeepsReadOnly):
     the motion has used up are looked at again. An answer is that of ``so.solids.distance`` at the
     same poses: the same statuses, and proven to the same tolerance.
 
+    Raises TypeError: neither a solid nor a body. Raises StandoffError: a body that is not bounded
+    or has no volume.
+
     Parameters
     ----------
     a, b : Solid or Body
@@ -64,13 +67,6 @@ class SolidTracker(KeepsReadOnly):
         All local minima of the distance below this one are kept in each frame, length.
     patch : float, optional
         Of each of them up to four pairs of points, as of ``so.solids.distance``.
-
-    Raises
-    ------
-    TypeError
-        Neither a solid nor a body.
-    StandoffError
-        A body that is not bounded or has no volume.
     """
 
     def __init__(
@@ -103,6 +99,8 @@ class SolidTracker(KeepsReadOnly):
     def start(self, pose_a: PoseLike, pose_b: PoseLike) -> SolidState:
         """Find the witness points globally, and prove it, whatever time a frame has.
 
+        Raises ValueError: no pose.
+
         Parameters
         ----------
         pose_a, pose_b : Pose or what ``Pose.of`` reads
@@ -111,11 +109,6 @@ class SolidTracker(KeepsReadOnly):
         Returns
         -------
         SolidState
-
-        Raises
-        ------
-        ValueError
-            No pose.
         """
         pair = PlacedPair(self.a, self.b, Pose.of(pose_a), Pose.of(pose_b))
         for body in (self.a, self.b):  # no frame waits for what a contact asks of its vertices
@@ -128,6 +121,9 @@ class SolidTracker(KeepsReadOnly):
     ) -> tuple[SolidState, SolidProximity]:
         """The answer at the given poses, from the state of the frame before.
 
+        Raises TypeError: `state` is no state. Raises ValueError: a state of another pair, or no
+        pose.
+
         Parameters
         ----------
         state : SolidState
@@ -138,13 +134,6 @@ class SolidTracker(KeepsReadOnly):
         Returns
         -------
         (SolidState, SolidProximity)
-
-        Raises
-        ------
-        TypeError
-            `state` is no state.
-        ValueError
-            A state of another pair, or no pose.
         """
         self._check(state)
         poses = Pose.of(pose_a), Pose.of(pose_b)
@@ -154,10 +143,7 @@ class SolidTracker(KeepsReadOnly):
     def buffer(self, state: SolidState) -> SolidFrameBuffer:
         """Arrays for ``step_into`` that begin at a state.
 
-        Raises
-        ------
-        TypeError, ValueError
-            As ``step``.
+        Raises TypeError, ValueError as ``step``.
         """
         self._check(state)
         return SolidFrameBuffer(self._asks, state)
@@ -174,6 +160,8 @@ class SolidTracker(KeepsReadOnly):
         and ``status`` read its answer without making an object. A frame that ties, or in which the
         solids begin or cease to overlap, or only touch, is made as ``step`` makes it.
 
+        Raises StandoffError: a buffer of another tracker. Raises ValueError: no pose.
+
         Parameters
         ----------
         buffer : SolidFrameBuffer
@@ -186,13 +174,6 @@ class SolidTracker(KeepsReadOnly):
         -------
         float
             The distance.
-
-        Raises
-        ------
-        StandoffError
-            A buffer of another tracker.
-        ValueError
-            No pose.
         """
         if buffer.asks is not self._asks:
             raise StandoffError(
@@ -212,6 +193,9 @@ class SolidTracker(KeepsReadOnly):
     ) -> tuple[SolidState, SolidAnswers]:
         """Many frames, each from the state of the one before, as with ``step``.
 
+        Raises TypeError, ValueError as ``step``, with the number of the frame; nothing is answered
+        then.
+
         Parameters
         ----------
         state : SolidState
@@ -223,11 +207,6 @@ class SolidTracker(KeepsReadOnly):
         -------
         (SolidState, SolidAnswers)
             The state after the last frame, and all answers as arrays.
-
-        Raises
-        ------
-        TypeError, ValueError
-            As ``step``, with the number of the frame; nothing is answered then.
         """
         self._check(state)
         a, b = _read(poses_a, "poses_a"), _read(poses_b, "poses_b")

@@ -31,10 +31,7 @@ class Effort(NamedTuple):
 def effort_of(top: Table) -> Effort:
     """Return what a job's table ``[prove]`` says.
 
-    Raises
-    ------
-    SceneError
-        What it says cannot be.
+    Raises SceneError: what it says cannot be.
     """
     if "prove" not in top:
         return Effort()

@@ -46,16 +46,13 @@ class ProofEstimate(NamedTuple):
 def estimated_proof(proof: Proof, workers: int = 1) -> ProofEstimate:
     """Try some queries, and tell what all of them will take; writes nothing.
 
+    Raises TypeError, ValueError: no proof, or a number of workers that is not positive.
+
     Parameters
     ----------
     proof : Proof
     workers : int
         As of `run_proof`.
-
-    Raises
-    ------
-    TypeError, ValueError
-        No proof, or a number of workers that is not positive.
     """
     check_proof(proof)
     whole_number(workers, "workers")

@@ -26,6 +26,8 @@ among them. They are for choosing what to halve, and prove nothing."""
 class Growth:
     """How a body grows with the numbers of its shape.
 
+    Raises StandoffError: a number of which the bodies do not nest.
+
     Parameters
     ----------
     shaped : ShapedBody
@@ -40,11 +42,6 @@ class Growth:
         1 where the body of a greater number is the larger one, -1 where it is the smaller.
     largest : Body
         Of the whole range: it holds every other one, and its core the others' cores.
-
-    Raises
-    ------
-    StandoffError
-        A number of which the bodies do not nest.
     """
 
     def __init__(self, shaped: ShapedBody, parameters: Sequence[Parameter]) -> None:

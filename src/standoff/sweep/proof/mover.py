@@ -60,6 +60,8 @@ class PlacedBody(NamedTuple):
 class Mover:
     """A body, and the parameters that move it and change its shape.
 
+    Raises StandoffError: parameters of its shape of which the bodies do not nest.
+
     Parameters
     ----------
     placed : PlacedBody
@@ -72,11 +74,6 @@ class Mover:
         The largest, of one whose shape changes; `far`, `box` and `radius` are of that one.
     growth : Growth or None
         Of one whose shape changes.
-
-    Raises
-    ------
-    StandoffError
-        Parameters of its shape of which the bodies do not nest.
     """
 
     def __init__(self, placed: PlacedBody, parameters: Sequence[Parameter]) -> None:

@@ -77,17 +77,14 @@ class Asked(AnswerArrays):
 class PairBox(ParameterBox):
     """The parameters of two convex bodies.
 
+    Raises StandoffError: parameters of a shape of which the bodies do not nest.
+
     Parameters
     ----------
     pair : pair of PlacedBody
     parameters : sequence of Parameter
         Shifts, turns and numbers of shapes, of these bodies and of others.
     clearance : float
-
-    Raises
-    ------
-    StandoffError
-        Parameters of a shape of which the bodies do not nest.
     """
 
     block = 8192

@@ -30,18 +30,15 @@ from standoff.sweep.work import Token, Work
 class Proof(Work):
     """That the bodies of a job keep a clearance at all parameters in their ranges.
 
+    Raises TypeError, ValueError: no job, or a clearance that is no length, or is negative;
+    parameters without ranges, or a subject that cells are not known of.
+
     Parameters
     ----------
     job : Job
         Its sampler has no part in it.
     clearance : float
         Length.
-
-    Raises
-    ------
-    TypeError, ValueError
-        No job, or a clearance that is no length, or is negative; parameters without ranges, or a
-        subject that cells are not known of.
     """
 
     def __init__(self, job: Job, clearance: float) -> None:
@@ -113,9 +110,7 @@ class Proof(Work):
 def check_proof(proof: Any) -> None:
     """Refuse what is no proof.
 
-    Raises
-    ------
-    StandoffTypeError
+    Raises StandoffTypeError.
     """
     if not isinstance(proof, Proof):
         raise StandoffTypeError(
@@ -126,9 +121,7 @@ def check_proof(proof: Any) -> None:
 def _box(job: Job, clearance: float) -> ParameterBox:
     """The job's box of parameters.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     if job.kind == "file":
         raise StandoffError(
@@ -163,9 +156,7 @@ def _box(job: Job, clearance: float) -> ParameterBox:
 def _check_planes(bodies: Mapping[str, Any], parameters: Sequence[Parameter]) -> None:
     """Refuse turns of a half-space, whose points go infinitely far.
 
-    Raises
-    ------
-    StandoffError
+    Raises StandoffError.
     """
     for name, body in bodies.items():
         turns = [p.name for p in parameters if p.moves == name and p.unit]

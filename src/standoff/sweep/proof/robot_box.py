@@ -30,17 +30,14 @@ SEEN_TOGETHER = 8192
 class RobotBox(ParameterBox):
     """The joints of a robot.
 
+    Raises StandoffError: a range that is outside a joint's limits.
+
     Parameters
     ----------
     subject : RobotSubject
     parameters : sequence of Parameter
         Joints of one number.
     clearance : float
-
-    Raises
-    ------
-    StandoffError
-        A range that is outside a joint's limits.
     """
 
     def __init__(

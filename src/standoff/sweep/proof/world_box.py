@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 class WorldBox(ParameterBox):
     """The parameters of a scene's world. A cell is proven where all pairs are.
 
+    Raises StandoffError: a body that need not be convex.
+
     Parameters
     ----------
     subject : SceneWorld
@@ -31,11 +33,6 @@ class WorldBox(ParameterBox):
     parameters : sequence of Parameter
         Shifts and turns.
     clearance : float
-
-    Raises
-    ------
-    StandoffError
-        A body that need not be convex.
     """
 
     block = 2048

@@ -44,10 +44,8 @@ class ConvexPair(ScenePair):
     def distances(self, parameters: Sequence[Parameter], numbers: Array) -> Distances:
         """Return the distances of rows of the same shapes.
 
-        Raises
-        ------
-        StandoffError
-            Rows of several shapes, which no one pair of bodies answers; numbers of no body.
+        Raises StandoffError: rows of several shapes, which no one pair of bodies answers; numbers
+        of no body.
         """
         found = list(groups(self.bodies, self.shaped, numbers))
         if len(found) > 1:

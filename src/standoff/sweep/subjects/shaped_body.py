@@ -110,10 +110,7 @@ class ShapedBody:
     def _made(self, numbers: tuple[float, ...]) -> Body:
         """Return the body of its numbers, the same bits as if the scene said them.
 
-        Raises
-        ------
-        StandoffError
-            If there is no such body; it tells the numbers.
+        Raises StandoffError if there is no such body; it tells the numbers.
         """
         own = list(zip(numbers, self.parts, strict=True))
         try:
@@ -161,17 +158,14 @@ def groups(
 ) -> Iterator[tuple[Any, tuple[Body, Body]]]:
     """Yield which rows have the same shapes, and the two bodies of these.
 
+    Raises StandoffError: numbers that make no body.
+
     Parameters
     ----------
     bodies : pair of Body
         Of which those stand for all rows that no parameter changes.
     shaped : pair of ShapedBody or None
     numbers : (n, columns) array
-
-    Raises
-    ------
-    StandoffError
-        Numbers that make no body.
     """
     if shaped == (None, None):
         yield slice(None), bodies
@@ -202,6 +196,8 @@ def answered_shapes(
     """Return the answers of rows, each of its own bodies, as the kernels write them (n, N_OUT); and
     the radii of the bodies' swept balls, (n,) each.
 
+    Raises StandoffError: numbers that make no body.
+
     Parameters
     ----------
     bodies, shaped, numbers
@@ -209,11 +205,6 @@ def answered_shapes(
     poses : two (n, 4, 4) arrays, or (1, 4, 4)
         As `rows_at_made_poses` takes them.
     within : float or None
-
-    Raises
-    ------
-    StandoffError
-        Numbers that make no body.
     """
     n = len(numbers)
     answers, radii = np.empty((n, K.N_OUT)), (np.empty(n), np.empty(n))

@@ -27,9 +27,7 @@ class SolidPair(ScenePair):
     def check(self) -> None:
         """Refuse a pair that cannot be asked.
 
-        Raises
-        ------
-        StandoffError
+        Raises StandoffError.
         """
         distance(*self.bodies, *self.homes, within=self.within)
 

@@ -77,6 +77,9 @@ def witness_set(
 ) -> WitnessSet:
     """The set of all pairs of witness points that an answer could have given.
 
+    Raises TypeError: no answer. Raises ValueError: the answer has no distance; only one pose is
+    given.
+
     Parameters
     ----------
     proximity : Proximity
@@ -87,13 +90,6 @@ def witness_set(
     Returns
     -------
     WitnessSet
-
-    Raises
-    ------
-    TypeError
-        No answer.
-    ValueError
-        The answer has no distance; only one pose is given.
 
     Notes
     -----
