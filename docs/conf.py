@@ -36,7 +36,7 @@ autodoc_type_aliases = {
     "TwistLike": "standoff.motion.TwistLike",
     "Frame": "standoff.motion.Frame",
     "Orientation": "standoff.motion.Orientation",
-    **{name: name for name in ("ArrayLike", "Array", "FloatArray", "Ints")},
+    **{name: name for name in ("ArrayLike", "Array", "Ints", "Bools")},
 }
 autodoc_member_order = "bysource"
 autodoc_class_signature = "mixed"

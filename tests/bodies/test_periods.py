@@ -25,11 +25,11 @@ from standoff.geometry import (
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.body import trimming
 from standoff.kernels.compiler.decorators import pointer
 from standoff.kernels.entries.queries import on_face
+from standoff.typing import Array
 
 CYLINDER = Cylinder(np.eye(3), np.zeros(3))
 CIRCLE = ConicArc(np.zeros(3), *np.eye(3)[:2])

@@ -10,7 +10,7 @@ from numpy.random import Generator
 
 import standoff as so
 from standoff.bodies.crossings import DIRECTIONS, Crossings
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 COUNT = 200
 """Points of each body and about each place of it."""

@@ -14,10 +14,10 @@ import standoff as so
 from shares import only
 from standoff.bodies.face_leaves import FaceChart, face_charts
 from standoff.cad.making import face_area
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import on_face, surface_jets
 from standoff.solids.spatial.leaves import face_leaves
 from standoff.solids.spatial.trims import pieces_of
+from standoff.typing import Array
 
 OVAL = [(2.5, 0.0), (2.1, 0.5), (1.6, 0.3), (1.5, -0.2), (2.0, -0.5)]
 NODES = 10

@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.bodies import Boundary, Edge, Face
 from standoff.geometry import Cylinder, Line, NurbsSurface, RationalBezier, Revolution, Torus
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.soak import solid_parts
 from standoff_studies.soak.solid_outlines import Arc, Outline, Segment
 

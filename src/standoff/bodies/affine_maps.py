@@ -10,7 +10,8 @@ from standoff.bodies.tolerances import SIMILARITY_TOLERANCE, SINGULAR_MAP
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array, matrix3, vector3
+from standoff.geometry.validation import matrix3, vector3
+from standoff.typing import Array
 
 
 class AffineMap(NamedTuple):

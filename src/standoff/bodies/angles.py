@@ -22,9 +22,9 @@ from standoff.bodies.tolerances import TURN_NOISE
 from standoff.bodies.topology import Apex
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.long_loops import told
 from standoff.motion.vectors import cross
+from standoff.typing import Array
 
 # Fractions of an edge at which its turn is sampled.
 SHARES = np.linspace(0.0, 1.0, 17)

@@ -28,9 +28,9 @@ from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.long_loops import told
+from standoff.typing import Array
 
 # Points of each span of an edge that are compared with the adjacent surface.
 SPAN_POINTS = 9

@@ -13,10 +13,10 @@ from standoff.bodies.tolerances import CHART_RIM, COLLAPSED_TANGENT, INWARD_STEP
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import EPS, NORMAL_NOISE
 from standoff.motion.vectors import cross
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.pcurves import Pcurve

@@ -14,7 +14,7 @@ from standoff.bodies.crossings import Crossings
 from standoff.bodies.enclosed import Enclosed, enclosed_by
 from standoff.bodies.face_leaves import face_charts, grown_box
 from standoff.bodies.packed_parts import PackedParts, packed_parts
-from standoff.bodies.packing import Assembled, Ints, pack, without_charts
+from standoff.bodies.packing import Assembled, pack, without_charts
 from standoff.bodies.report import BoundaryReport
 from standoff.bodies.sampling import blind_charts, curve_box, inner_boxes
 from standoff.bodies.sewing import sew
@@ -28,8 +28,8 @@ from standoff.bodies.tolerances import (
 )
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array, Ints
 
 # Greatest number of a shell's faces that a message names.
 MOST_NAMED = 6

@@ -26,8 +26,8 @@ from standoff.bodies.proofs import PatchProof, prove_patch
 from standoff.bodies.report import PatchCheck
 from standoff.bodies.tolerances import LEAST_AXIS, TURN_ROUNDOFF
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
 from standoff.long_loops import told
+from standoff.typing import Array
 
 
 @dataclass(frozen=True)

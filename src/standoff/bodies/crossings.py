@@ -15,8 +15,8 @@ from standoff.bodies.face_leaves import FaceChart, Leaves, face_charts, leaves_o
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tolerances import CROSSING_STEP, LEAF_MARGIN, SAME_CROSSING
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import on_face
+from standoff.typing import Array
 
 # Half the angle of a leaf's cone of normals, radians.
 LEAF_ANGLE = 0.4

@@ -16,7 +16,7 @@ from standoff.bodies.packing import Assembled
 from standoff.bodies.tolerances import VOLUME_ROUNDINGS
 from standoff.bodies.topology import Edge
 from standoff.geometry.curves import Curve, Line
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 EPS = float(np.finfo(float).eps)
 # Gauss points for each span of a curve in a plane face.

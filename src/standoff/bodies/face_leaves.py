@@ -14,9 +14,9 @@ from standoff.bodies.tessellation import TILE, chart_row, coedge_range, packed_p
 from standoff.bodies.tolerances import BOX_REACH
 from standoff.geometry.pcurve_boxes import equal_boxes
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
+from standoff.typing import Array
 
 # Parts of a trimming curve, each with its own box.
 PARTS = 16

@@ -9,7 +9,7 @@ import numpy as np
 from standoff.bodies.angles import EdgeTurns, check_vertices, dihedral, edge_turns, refined
 from standoff.bodies.assembly import Joined
 from standoff.bodies.convexity import Convexity, Known, convexity
-from standoff.bodies.packing import Assembled, Ints, pack, without_charts
+from standoff.bodies.packing import Assembled, pack, without_charts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sampling import (
     blind_charts,
@@ -26,7 +26,7 @@ from standoff.bodies.tolerances import (
     coordinate_roundoff,
 )
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
+from standoff.typing import Array, Ints
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ import numpy as np
 from standoff.bodies.packing import Chart, Coedge
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Points on each coedge.
 ALONG = 33

@@ -20,8 +20,8 @@ from standoff.bodies.tolerances import PIECE_ROUNDOFF, SMOOTH_ANGLE
 from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 Volume = Callable[[Sequence[int]], float]
 """The volume that the faces of a shell enclose, as their charts face now: negative if they face

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from standoff.bodies.made_parts import MadeParts
-from standoff.bodies.packing import Assembled, Ints, pack
+from standoff.bodies.packing import Assembled, pack
 from standoff.bodies.topology import Edge, Face
-from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array, Ints
 from standoff.wording import counted, printable
 
 if TYPE_CHECKING:

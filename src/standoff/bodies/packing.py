@@ -11,18 +11,15 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array, Ints
 
 if TYPE_CHECKING:
     from standoff.geometry.pcurves import Pcurve
-
-Ints = NDArray[np.int64]
 
 
 @dataclass

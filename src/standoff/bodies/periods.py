@@ -28,8 +28,8 @@ from standoff.errors import BodyError
 from standoff.geometry.bernstein import segments
 from standoff.geometry.pcurve_boxes import bezier_box, equal_boxes
 from standoff.geometry.torus import full_turn
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 PERIOD = 2.0 * np.pi
 # Points of a trimming curve between which it crosses a line of constant u at most once, and parts

@@ -20,7 +20,7 @@ from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.swept import Extrusion
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Points of one span of a curve between which turns are summed: each turn is less than pi.
 TURN_POINTS = 65

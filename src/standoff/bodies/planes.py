@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import chart_normal, feature_jet
+from standoff.typing import Array
 
 
 def outer_plane(body: Body) -> tuple[Array, float]:

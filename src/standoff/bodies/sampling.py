@@ -9,11 +9,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from standoff.bodies.packing import Assembled, Chart, Ints, Sample
+from standoff.bodies.packing import Assembled, Chart, Sample
 from standoff.bodies.topology import Edge
 from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import (
     chart_normal,
@@ -22,6 +21,7 @@ from standoff.kernels.entries.queries import (
     planar_edge_normal,
 )
 from standoff.kernels.tolerances import RECHART
+from standoff.typing import Array, Ints
 
 # About how many samples a body gets: a cold start compares all pairs of two bodies' samples.
 FACE_BUDGET = 120

@@ -20,9 +20,9 @@ from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import on_face
+from standoff.typing import Array
 
 # Samples of a piece of a curve: between two of them an arc of a convex body's boundary rises and
 # falls once.

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import (
     chart_normal,
@@ -19,6 +18,7 @@ from standoff.kernels.entries.queries import (
     on_face,
     planar_edge_normal,
 )
+from standoff.typing import Array
 
 # Points along each coedge, and along each edge: a full circle is drawn without visible corners.
 ALONG = 33

@@ -9,8 +9,8 @@ from typing import Final
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.kernels.tolerances import EPS
+from standoff.typing import Array
 
 COORDINATE_ROUNDINGS: Final = 16.0
 """Roundings (eps) of the greatest coordinate by which parts may always miss each other: points of

@@ -14,7 +14,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffTypeError
 from standoff.geometry.curves import Curve, Line
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.pcurves import Pcurve

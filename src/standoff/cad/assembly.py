@@ -15,8 +15,8 @@ from standoff.wording import counted
 if TYPE_CHECKING:
     from standoff.bodies.body import Body
     from standoff.bodies.boundary import Boundary
-    from standoff.geometry.validation import Array
     from standoff.solids import Solid
+    from standoff.typing import Array
 
 
 @dataclass(frozen=True)

@@ -23,9 +23,9 @@ from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.tolerances import NET_ROUNDING, WHOLE_CONIC
-from standoff.geometry.validation import Array
 from standoff.geometry.vectors import crosses
 from standoff.kernels.entries.queries import surface_jets
+from standoff.typing import Array
 
 # Samples of each part of a spline along u and along v.
 SHARES = np.array([0.05, 0.4, 0.7, 0.95])

@@ -15,8 +15,8 @@ from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 AFFINE = np.array([0.0, 0.0, 1.0])
 ROUND_KINDS = {L.CYLINDER: (0,), L.CONE: (0,), L.TORUS: (0, 1), L.REVOLUTION: (0,)}

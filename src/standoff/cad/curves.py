@@ -17,7 +17,7 @@ from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.knots import GREATEST_DEGREE
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.tolerances import WHOLE_CONIC
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Degree of a fitted curve, how often a span is halved at most, and values compared within each.
 FIT_DEGREE = 7

@@ -21,7 +21,7 @@ from standoff.cad.opencascade import (
 )
 from standoff.checks.units import METRES
 from standoff.errors import CadError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 NAMES = {"millimetre": "mm", "centimetre": "cm", "metre": "m", "INCH": "inch", "inch": "inch"}
 NO_NAME = re.compile(r"=>\[[\d:]*\]|Open CASCADE STEP translator [\d. ]+|SOLID|COMPOUND|NONE")

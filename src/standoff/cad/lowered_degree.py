@@ -12,7 +12,7 @@ from standoff.cad.tolerances import FITTED_TRIM
 from standoff.geometry.bernstein import basis as bernstein
 from standoff.geometry.bernstein import segment
 from standoff.geometry.knots import GREATEST_DEGREE, KnotVector, bezier_spans
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 LOWER = 8
 """The degree in place of one that is too high."""

@@ -44,8 +44,8 @@ from standoff.cad.seams import without_seams
 from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY
 from standoff.errors import BodyError, StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 from standoff.wording import counted
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from standoff.cad.tolerances import BOUND_FLOOR
 from standoff.geometry.curves import Curve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Parts of a collapsed side.
 SIDE_PARTS = 32

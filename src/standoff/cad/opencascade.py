@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 
 with of_extra("OpenCASCADE", "cad"):
     import OCP  # noqa: F401
@@ -25,6 +24,8 @@ from OCP.TopAbs import (
 )
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
+
+from standoff.typing import Array
 
 KINDS = {
     "solid": TopAbs_SOLID,

@@ -26,7 +26,7 @@ from standoff.cad.trims import extent, limits_of, trim
 from standoff.errors import BodyError, StandoffError
 from standoff.geometry.curves import FULL_TURN, Line
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 class Refused(StandoffError):

@@ -27,9 +27,9 @@ from standoff.geometry.pcurve_boxes import bezier_box
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution, Swept
-from standoff.geometry.validation import Array
 from standoff.geometry.vectors import crosses
 from standoff.kernels.body import layout as L
+from standoff.typing import Array, Ints
 
 # Chebyshev points for each degree: the bound is above the greatest value there by 8 % at most.
 POINTS = 4
@@ -38,9 +38,6 @@ BETWEEN = 1.0 / np.cos(0.5 * np.pi / POINTS)
 MOST_DEGREE, MOST_HALVINGS, MOST_OPEN = 80, 16, 1024
 # Bezier patches that one range may meet.
 MOST_PATCHES = 9
-
-
-Indices = NDArray[np.int64]
 
 
 class Ranges(NamedTuple):
@@ -251,7 +248,7 @@ def _surface_remainder(of: Surface, points: Array) -> float:
     return float(4.0 * REMAINDER * BOUND_FLOOR * (reach + np.linalg.norm(of.linear) * own))
 
 
-def _images(surface: Surface, uv: Array, low: Array, high: Array) -> tuple[Indices, Array, Array]:
+def _images(surface: Surface, uv: Array, low: Array, high: Array) -> tuple[Ints, Array, Array]:
     """Of ranges that have boxes (n, 2) in (u, v): (owners (r,), points (r, m, 3), weights (r, m))
     at uv (n, m, 2), once by each polynomial that a range may meet, also beyond its own knots; none
     of those that meet too many."""
@@ -282,7 +279,7 @@ def _images(surface: Surface, uv: Array, low: Array, high: Array) -> tuple[Indic
     return np.arange(len(uv)), x, np.ones(uv.shape[:2])
 
 
-def _met(breaks: Sequence[Array], low: Array, high: Array) -> tuple[Indices, list[Indices]]:
+def _met(breaks: Sequence[Array], low: Array, high: Array) -> tuple[Ints, list[Ints]]:
     """(owners (r,), numbers (r,) of spans along each axis): the spans between knots, or products of
     them, that boxes (n, axes) may meet."""
     spans = []
@@ -301,6 +298,6 @@ def _met(breaks: Sequence[Array], low: Array, high: Array) -> tuple[Indices, lis
     return owners, found[::-1]
 
 
-def _shares(knots: Array, spans: Indices, at: Array) -> Array:
+def _shares(knots: Array, spans: Ints, at: Array) -> Array:
     """Parameters (r, m) as shares of knot spans (r,), beyond 0 and 1 outside."""
     return np.asarray((at - knots[spans, None]) / np.diff(knots)[spans, None])

@@ -14,7 +14,7 @@ import numpy as np
 
 from standoff.cad.opencascade import box_of, cast, coordinates, explored, forward
 from standoff.cad.tolerances import QUADRATURE
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Points of Gauss's rule in a panel, panels of a face at most, and points at which its edges are
 # compared with its trimming curves.

@@ -17,7 +17,7 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.quadrics import Sphere, sphere_atlas
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Points of each edge that a chart must see.
 SEEN = 17

@@ -22,7 +22,7 @@ from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
 from standoff.geometry.torus import Torus
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # How far beyond its trimming curves' ends a spline goes on, and at most, in its last span.
 GROWTH, MOST_GROWTH = 1.5, 0.02

@@ -41,9 +41,9 @@ from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import surface_jets
+from standoff.typing import Array
 
 Inverse = Callable[[Array], Array]
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.checks.numbers import GREATEST
 from standoff.checks.real_numbers import check_readable, real_array, shown
 from standoff.errors import StandoffError, UnreadableNumbers
-
-FloatArray = NDArray[np.float64]
+from standoff.typing import Array
 
 LONGEST = 400
 """Longest array that a message repeats, in characters: a matrix of 4 by 4 with all its digits."""
@@ -27,7 +26,7 @@ def text(value: ArrayLike) -> str:
     return written if len(written) <= LONGEST else written[: LONGEST - 1] + "…"
 
 
-def finite(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
+def finite(value: Any, name: str, shape: tuple[int, ...] | None) -> Array:
     """Copy `value` to a read-only float64 array of the given shape (-1 matches any length; None:
     of any).
 
@@ -49,7 +48,7 @@ def finite(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
     return copied
 
 
-def finite_rows(value: Any, name: str, columns: int) -> FloatArray:
+def finite_rows(value: Any, name: str, columns: int) -> Array:
     """`finite` of many rows of numbers, such as points: the message names the first wrong row."""
     copied = numbers(value, name, (-1, columns))
     wrong = ~(np.abs(copied) <= GREATEST).all(axis=1)
@@ -64,7 +63,7 @@ def finite_rows(value: Any, name: str, columns: int) -> FloatArray:
     return copied
 
 
-def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> FloatArray:
+def numbers(value: Any, name: str, shape: tuple[int, ...] | None) -> Array:
     """Copy `value` to a float64 array of the given shape (None: of any), whose numbers may be of
     any size."""
     try:
@@ -90,7 +89,7 @@ def unmasked(value: object, name: str) -> None:
         raise StandoffError(f"{name} {error}: {shown(value)}", name, value) from error
 
 
-def direction(value: Any, name: str) -> FloatArray:
+def direction(value: Any, name: str) -> Array:
     """Read a vector of any length but zero; the unit vector along it is returned, read-only."""
     vector = numbers(value, name, (3,))
     # Scaled first: the square of a very short or long vector would underflow or overflow.
@@ -99,7 +98,7 @@ def direction(value: Any, name: str) -> FloatArray:
         raise StandoffError(
             f"{name} is {text(vector)}: a direction needs a finite length above zero", name, value
         )
-    unit: FloatArray = vector / largest
+    unit: Array = vector / largest
     unit /= np.linalg.norm(unit)
     unit.setflags(write=False)
     return unit

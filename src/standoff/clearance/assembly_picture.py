@@ -27,8 +27,8 @@ from standoff.clearance.picture import (
 from standoff.clearance.report import Report, Row
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.typing import Array
 
 with of_extra("matplotlib", "plot"):
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -10,9 +10,9 @@ import numpy as np
 
 from standoff.clearance.report import Nearest, horizon, uncertified_in
 from standoff.progress import Progress
-from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.world import World, WorldAnswer
 from standoff.world.state import WorldCounts
 

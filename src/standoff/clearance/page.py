@@ -33,8 +33,8 @@ from standoff.clearance.report import (
     within_tolerance,
 )
 from standoff.motion import Pose
-from standoff.scene.reader import Array
 from standoff.tracking.proximity import shown_size
+from standoff.typing import Array
 from standoff.version import __version__
 from standoff.wording import at_least, counted, printable
 

@@ -20,11 +20,11 @@ from standoff.bodies.tolerances import FLAT_CLOUD
 from standoff.clearance.report import Report, Row, gap_text
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.motion.vectors import pose_row
 from standoff.solids.planar.loops import points_along
 from standoff.tracking import distance
+from standoff.typing import Array
 from standoff.wording import at_least, at_most, short_name
 from standoff.world import Compound, World
 from standoff.world.shapes import boundary_of

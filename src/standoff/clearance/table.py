@@ -8,10 +8,10 @@ import numpy as np
 
 from standoff import parquet
 from standoff.parquet import pa
-from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
 from standoff.scene.worlds import by_piece
+from standoff.typing import Array
 from standoff.version import __version__
 from standoff.world import World, WorldAnswer
 from standoff.world.shapes import boundary_of

@@ -22,7 +22,7 @@ from standoff.cli.progress import progress_bar
 from standoff.cli.terminal import tell
 from standoff.scene import Scene, SceneError, load_scene
 from standoff.scene.part_files import ENDINGS
-from standoff.scene.reader import Array
+from standoff.typing import Array
 from standoff.world import World
 
 

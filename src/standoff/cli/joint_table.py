@@ -7,15 +7,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
 from standoff.checks.real_numbers import shown
 from standoff.cli.errors import CommandError
 from standoff.robots.robot_model import RobotModel
+from standoff.typing import Array
 from standoff.wording import counted
-
-Array = NDArray[np.float64]
 
 TIMES = ("time", "t")
 """What the column of the times may be called."""

@@ -13,7 +13,6 @@ from standoff.impact import Impact
 from standoff.recording import RecordedEvent, Recording
 from standoff.recording.local_minima import MinimumEvent
 from standoff.scene import Scene
-from standoff.scene.reader import Array
 from standoff.solids.answer import SolidCounts, SolidProximity
 from standoff.tracking import Counts, Proximity, Status
 from standoff.tracking.branches import NONE
@@ -21,6 +20,7 @@ from standoff.tracking.feedback_facts import feedback_text
 from standoff.tracking.law_options import OfFeedback, Option, options_of
 from standoff.tracking.laws import LAWS, PredictorCorrector
 from standoff.tracking.proximity import shown_size
+from standoff.typing import Array
 from standoff.wording import MOST_DIGITS, at_least, at_most, counted, printable
 from standoff.world.shapes import boundary_of
 

@@ -5,9 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.cli.summary import MARGIN, line, share_text, vector_text
 from standoff.sweep.estimate import Estimate
 from standoff.sweep.folder import REPORT
@@ -18,6 +15,7 @@ from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.summary import Listed, Spread
 from standoff.tracking.proximity import shown_size
 from standoff.tracking.status import BY_NUMBER
+from standoff.typing import Array
 from standoff.wording import at_least, counted, printable
 
 FIRST_ROWS = 5
@@ -31,8 +29,6 @@ MOST_BARS = 24
 
 TIMES = ((86400.0, "d"), (3600.0, "h"), (60.0, "min"))
 SIZES = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
-
-Array = NDArray[np.float64]
 
 
 def grouped(number: int) -> str:

@@ -13,7 +13,6 @@ from standoff.checks.numbers import whole_number
 from standoff.checks.real_numbers import shown
 from standoff.control.tolerances import FOUND_MINIMUM, SETTLED_RUN
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import Array
 from standoff.motion import PoseLike
 from standoff.tracking import Tracker, calls, distance
 from standoff.tracking.calls import DESCEND, HERE, Frame
@@ -21,6 +20,7 @@ from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.rows import AnswerRows, StateRow
+from standoff.typing import Array
 
 
 class Basin(NamedTuple):

@@ -18,10 +18,10 @@ from standoff.control.tolerances import POLE_AREA, SEARCH_TOLERANCE
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters, on_face
 from standoff.tracking.inputs import check_body
+from standoff.typing import Array
 
 # Points along every side of a face, and along a planar curve, at which a search begins.
 SIDE_POINTS = 33

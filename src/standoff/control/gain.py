@@ -17,10 +17,10 @@ from standoff.control.curvature import least_curvature
 from standoff.control.growth import stability_limit
 from standoff.control.tolerances import REAL_EXTREME, WHOLE_STEPS
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.tracking.feedback import growth_factor
 from standoff.tracking.inputs import check_body, check_pair
+from standoff.typing import Array
 
 
 def min_gain(

@@ -25,7 +25,6 @@ from standoff.bodies.features import charts_of
 from standoff.checks.numbers import whole_number
 from standoff.control.tolerances import CURVE_TOLERANCE, DIRECTION_TOLERANCE
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.entries import queries
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.tolerances import RECHART
@@ -35,6 +34,7 @@ from standoff.tracking.inputs import flat_pose
 from standoff.tracking.pair_system import UPPER
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.rows import StateRow, motion_row
+from standoff.typing import Array
 
 # Greatest length of a curve, in parts of the pair's size: past it there is no end worth finding.
 LONGEST = 20.0

@@ -11,11 +11,11 @@ from standoff.control.basin import AtRest
 from standoff.control.lyapunov import LyapunovLevels, RestSystem
 from standoff.control.tolerances import FOUND_MINIMUM
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import Array
 from standoff.motion import PoseLike
 from standoff.tracking import Tracker, distance
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.rows import AnswerRows
+from standoff.typing import Array
 
 SIZES = 0.999 * np.logspace(-3, 0, 49)  # of the level's sqrt(2 V): errors tried on each curve
 STEPS = 2  # Euler's turns an error round: what is of second order cancels over two

@@ -7,15 +7,13 @@ be renumbered and described anew: any of their points rises with them. All else 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from standoff.bodies.boundary import Boundary
 from standoff.design.points import Group, points_of
 from standoff.kernels.body import layout as L
+from standoff.typing import Array, Ints
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 CLEARLY = 2.0
 """Times the least distance: what another feature must be nearer by to be meant."""
 

@@ -7,21 +7,20 @@ from functools import cached_property, partial
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature, charts_of
 from standoff.checks.arrays import finite
 from standoff.checks.names import choice
 from standoff.checks.real_numbers import shown
-from standoff.design.alignment import Ints, numbers_in
+from standoff.design.alignment import numbers_in
 from standoff.design.points import Group, group_of, points_of
 from standoff.design.tolerances import DESIGN_STEP, NO_SCALE, ROUGH, UNBOUNDED_SIZE
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.typing import Array, Ints
 
-Array = NDArray[np.float64]
 NODES = (-2, -1, 1, 2)
 WEIGHTS = (1.0 / 12.0, -8.0 / 12.0, 8.0 / 12.0, -1.0 / 12.0)
 """Of the central difference of fourth order, in steps."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature, charts_of
@@ -14,9 +13,8 @@ from standoff.errors import StandoffError
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries import queries
 from standoff.solids.planar.solid import PlanarSolid
+from standoff.typing import Array, Ints
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 SURFACE_JET, CURVE_JET = 18, 9  # numbers of a row that the kernels write, the point first
 
 

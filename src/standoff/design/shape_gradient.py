@@ -31,8 +31,7 @@ from standoff.tracking.derivatives import (
 )
 from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.proximity import Proximity
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class ShapeGradient(NamedTuple):

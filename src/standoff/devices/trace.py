@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import number, positive, yes_or_no
 from standoff.devices.tolerances import PERIOD_ROUNDING
@@ -22,8 +21,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading
 from standoff.simulation.device_readings import MOST_MADE
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Trace(KeepsReadOnly):

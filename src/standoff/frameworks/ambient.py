@@ -19,7 +19,6 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.checks.names import choice
@@ -30,8 +29,7 @@ from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.many_distances import answered_rows
 from standoff.tracking.proximity import Proximity
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 ENTRIES = 16
 NONE = np.zeros(0)

@@ -21,8 +21,8 @@ from standoff.design import Design, shape_gradient
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.frameworks import ambient
 from standoff.tracking.derivatives import Smoothness
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Shape = tuple[int, ...]
 POSE: Shape = (4, 4)
 

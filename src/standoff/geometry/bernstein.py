@@ -13,7 +13,7 @@ from math import comb
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 @cache

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.geometry.intervals import Interval
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 class Boxes:

@@ -11,7 +11,7 @@ from standoff.geometry.bernstein import segment
 from standoff.geometry.curves import ConicArc, Curve, Line, RationalBezier
 from standoff.geometry.hulls import tight_box
 from standoff.geometry.nurbs_curves import NurbsCurve
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def curve_reach(curve: Curve, direction: Array, first: float, last: float) -> float:

@@ -12,10 +12,11 @@ from standoff.checks.numbers import number
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
 from standoff.geometry.tolerances import PARALLEL_AXES, WHOLE_CONIC
-from standoff.geometry.validation import Array, affine_map, check_alike, vector3
+from standoff.geometry.validation import affine_map, check_alike, vector3
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import curve_jet, curve_jets
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula

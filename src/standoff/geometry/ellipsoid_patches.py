@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from standoff.checks.numbers import magnitude
 from standoff.geometry.bernstein import product
 from standoff.geometry.nurbs import BezierPatch
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def ellipsoid_patches(a: Any, b: Any, c: Any) -> tuple[BezierPatch, ...]:

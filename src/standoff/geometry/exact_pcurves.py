@@ -15,8 +15,8 @@ from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ROUND_SECTION
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 
 def pcurve_of(curve: Curve, surface: Surface) -> Pcurve:

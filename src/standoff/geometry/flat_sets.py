@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from standoff.geometry.tolerances import KEPT_EXTENT, NARROWED, WIDENINGS
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from standoff.geometry.jet_bounds import widened
 from standoff.geometry.patch_bounds import PatchBounds, between, cone_round
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import LENGTH_ROUNDING
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def corners(boxes: Boxes) -> list[tuple[Array, Array]]:

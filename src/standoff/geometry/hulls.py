@@ -11,7 +11,7 @@ import numpy as np
 
 from standoff.geometry.bernstein import halves
 from standoff.geometry.tolerances import BOX_MARGIN, TIGHT_BOX
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Greatest number of halvings, and of pieces at a time.
 MOST_HALVINGS = 24

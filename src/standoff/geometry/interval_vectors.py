@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from standoff.geometry.intervals import Interval, cos, interval, sin, sqrt
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def mapped(linear: Array | Interval, x: Interval) -> Interval:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.geometry.tolerances import CREST_ROUNDOFF, LIBRARY_ERROR
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 TINY = float(np.finfo(np.float64).tiny)
 # Greatest angle that is reduced: for larger ones the quadrant is not known reliably.

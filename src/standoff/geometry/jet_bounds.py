@@ -24,7 +24,7 @@ from standoff.geometry.patch_bounds import (
 )
 from standoff.geometry.series import Series
 from standoff.geometry.tolerances import BOX_MARGIN
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 SIGNS = (-1.0, 1.0)
 # Indices in a jet, and the factorials of Taylor coefficients in the order of `Series`.

@@ -17,7 +17,7 @@ import scipy
 
 from standoff.geometry.knots import KnotVector, insertion
 from standoff.geometry.tolerances import SAME_WEIGHTS, SPARE_KNOT
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Up to so many control points a dense solution is faster than a banded one.
 FEW_POINTS = 24

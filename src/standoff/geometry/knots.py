@@ -19,8 +19,8 @@ import numpy as np
 
 from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 # The compiled jets have room for basis functions up to this degree.
 GREATEST_DEGREE = 9

@@ -25,8 +25,8 @@ from standoff.geometry.tolerances import (
     POLYNOMIAL_WEIGHTS,
     SPAN_ROUNDING,
 )
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import net_cones
+from standoff.typing import Array
 
 EPS = float(np.finfo(np.float64).eps)
 # Cones wider than this (radians) are computed again from the product of the nets.

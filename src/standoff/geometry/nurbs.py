@@ -28,14 +28,9 @@ from standoff.geometry.knots import (
     refine,
 )
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import (
-    Array,
-    Domain,
-    affine_map,
-    check_alike,
-    inside,
-)
+from standoff.geometry.validation import Domain, affine_map, check_alike, inside
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

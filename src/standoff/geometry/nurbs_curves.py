@@ -15,8 +15,9 @@ from standoff.geometry.knot_removal import essential_row
 from standoff.geometry.knots import KnotVector, bezier_spans, elevate_knots, knot_vector, refine
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.tolerances import SMOOTH_JOINT
-from standoff.geometry.validation import Array, affine_map
+from standoff.geometry.validation import affine_map
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.intervals import Interval

@@ -15,9 +15,9 @@ from standoff.geometry.knots import bezier_spans, knot_vector
 from standoff.geometry.nurbs import checked_weights
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.tolerances import INFLECTION, INFLECTION_ROUNDOFF, STRAIGHT_PCURVE
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet, pcurve_jets
+from standoff.typing import Array
 
 # A piece of a NURBS pcurve turns by less than this (radians): 180 degrees with a margin.
 MOST_TURN = 0.9 * np.pi

@@ -19,9 +19,9 @@ from standoff.geometry.boxes import Boxes
 from standoff.geometry.interval_vectors import cross, length
 from standoff.geometry.intervals import Interval, interval, sqrt
 from standoff.geometry.tolerances import CONE_ROUNDING, VANISHED
-from standoff.geometry.validation import Array
 from standoff.geometry.vectors import crosses
 from standoff.kernels.entries.queries import centres
+from standoff.typing import Array
 
 UNKNOWN = float(np.pi)
 UP = np.array([0.0, 0.0, 1.0])[:, None, None]

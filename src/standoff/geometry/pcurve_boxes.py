@@ -8,8 +8,8 @@ from standoff.geometry.bernstein import equal_segments
 from standoff.geometry.interval_vectors import stacked, wave
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.tolerances import BOX_MARGIN
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Parts of a conic with varying weight, each bounded separately.
 CONIC_PARTS = 8

@@ -9,10 +9,10 @@ import numpy as np
 
 from standoff.checks.real_numbers import real_array, shown
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import pcurve_jet, pcurve_jets
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

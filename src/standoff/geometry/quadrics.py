@@ -10,8 +10,9 @@ import numpy as np
 from standoff.errors import StandoffError
 from standoff.geometry.rotational import Rotational
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, matrix3, vector3
+from standoff.geometry.validation import matrix3, vector3
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

@@ -23,7 +23,7 @@ from standoff.geometry.interval_vectors import (
 )
 from standoff.geometry.intervals import Interval, cos, interval, sin, sqrt
 from standoff.geometry.patch_bounds import cone_round, framed, normal_curvatures
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # An arc of less than this part of half a turn lies in the triangle of its chord and end tangents.
 WIDEST_ARC = 0.95

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.geometry.curves import ConicArc
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def alike(a: float, b: float, tolerance: float) -> bool:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.intervals import FUNCTIONS, TINY, Interval, interval
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 PLAIN: dict[str, Any] = dict(FUNCTIONS)
 EPS = float(np.finfo(np.float64).eps)

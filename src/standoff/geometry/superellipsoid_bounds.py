@@ -21,8 +21,8 @@ from standoff.geometry.patch_bounds import PatchBounds, cone_round
 from standoff.geometry.series import Series
 from standoff.geometry.series import power as series_power
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 
 def _signs(side: Interval) -> Array:

@@ -10,8 +10,8 @@ import numpy as np
 from standoff.checks.numbers import number
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

@@ -14,8 +14,8 @@ from standoff.geometry.curves import Curve, fill_curve
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import WHOLE_TURN
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.formulas.compiled import Formula

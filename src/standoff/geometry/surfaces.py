@@ -17,7 +17,6 @@ from standoff.errors import StandoffError
 from standoff.geometry.tolerances import DEPENDENT_COLUMNS
 from standoff.geometry.validation import (
     UNBOUNDED,
-    Array,
     Domain,
     affine_map,
     checked_domain,
@@ -27,6 +26,7 @@ from standoff.geometry.validation import (
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import surface_jet, surface_jets
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

@@ -18,8 +18,9 @@ from standoff.geometry.rotational import Rotational
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.tolerances import ALONG_PROFILE, PROFILE_ROUNDOFF, ROUND_POLE
 from standoff.geometry.torus import checked_turn, full_turn
-from standoff.geometry.validation import Array, Domain, affine_map, inside, vector3
+from standoff.geometry.validation import Domain, affine_map, inside, vector3
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

@@ -13,8 +13,9 @@ from standoff.geometry.interval_vectors import stacked, wave
 from standoff.geometry.intervals import Interval, cos, interval, near, sin
 from standoff.geometry.rotational import Rotational
 from standoff.geometry.tolerances import ANGLE_ROUNDOFF
-from standoff.geometry.validation import Array, Domain, affine_map
+from standoff.geometry.validation import Domain, affine_map
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 
 def full_turn(first: float, last: float) -> bool:

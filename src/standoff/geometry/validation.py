@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import real_array, shape_of, shown
 from standoff.errors import StandoffError
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 Domain = tuple[float, float, float, float]
 """Of a surface: the ranges (u0, u1, v0, v1) of its parameters."""

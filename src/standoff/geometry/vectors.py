@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def crosses(a: Array, b: Array) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
@@ -18,9 +17,8 @@ from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.many_distances import answered_rows, cold_rows
 from standoff.tracking.reached import AddressTables
+from standoff.typing import Array
 from standoff.wording import short_name
-
-Array = NDArray[np.float64]
 
 
 class DistancesOfThreads(Distances):

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from standoff.gpu.compiler import cuda
 
-Array = NDArray[np.float64]
-
 
 def sent(array: NDArray[Any]) -> Any:
     """A copy of an array on the GPU."""

@@ -23,9 +23,8 @@ from standoff.tracking.many_states import TrackerStates
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 from standoff.wording import counted
-
-Array = NDArray[np.float64]
 
 
 class Tracks:

@@ -6,14 +6,10 @@ from dataclasses import dataclass, fields
 from enum import Enum
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.bodies.plain_data import PlainData, plain, without_roundoff
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.proximity import Proximity, shown_size
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class ImpactStatus(Enum):

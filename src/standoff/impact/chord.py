@@ -23,13 +23,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.impact.moment import Box, Moment
 from standoff.motion.bounds import MotionBounds, bounds_of
 from standoff.motion.vectors import cross, length
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 STALE = 4.0
 """Bounds on the motion are taken anew where they hold for an interval this many times as long."""

@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.planes import outer_plane
 from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
@@ -18,8 +17,7 @@ from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 EPS = float(np.finfo(np.float64).eps)
 

@@ -12,9 +12,6 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.impact.moment import Box, Moment
 from standoff.impact.search import Search
 from standoff.motion.vectors import cross
@@ -22,8 +19,6 @@ from standoff.solids import PlanarSolid, SolidProximity, distance
 from standoff.solids.spatial.models import as_model
 from standoff.solids.tracked.tracker import SolidTracker, is_tracked
 from standoff.tracking.inputs import flat_pose, flat_twist
-
-Array = NDArray[np.float64]
 
 SAFETY = 0.95
 """Part of the longest interval that is expected to be provable."""

@@ -10,7 +10,7 @@ from typing import Protocol, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from standoff.checks.arrays import FloatArray, finite
+from standoff.checks.arrays import finite
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -19,6 +19,7 @@ from standoff.motion.pose_function import path_of
 from standoff.motion.twist import TwistLike
 from standoff.motion.vectors import cross, length
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class MotionBounds:
     acceleration: float
     angular_speed: float
     angular_acceleration: float
-    axis: FloatArray | None = None
+    axis: Array | None = None
     lengths: float = 0.0
 
 
@@ -64,7 +65,7 @@ class BoundedPath(Protocol):
         """Return how the body moves at time `t` [s]."""
         ...
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds that hold from time `first` to `last` [s], between two breaks.
 
         `point` (3,) is fixed in the body, in its coordinates. The two times may be one.
@@ -138,7 +139,7 @@ class Bounded(KeepsReadOnly):
         how: TwistLike = self._twist(t)
         return how
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds that hold from time `first` to `last` [s] for a point of the body."""
         lengths = self._lengths
         if lengths is None:
@@ -152,7 +153,7 @@ class Bounded(KeepsReadOnly):
         return [float(t) for t in within]
 
 
-def _times(value: ArrayLike, name: str) -> FloatArray:
+def _times(value: ArrayLike, name: str) -> Array:
     """Read a sequence of times of any length."""
     shape = shape_of(value)
     if shape is None or len(shape) != 1:
@@ -162,7 +163,7 @@ def _times(value: ArrayLike, name: str) -> FloatArray:
     return finite(value, name, (shape[0],))
 
 
-def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:
+def of_point(origin: MotionBounds, point: Array) -> MotionBounds:
     """Return the bounds for a point of a body whose origin's are known."""
     reach = length(point)
     turn = origin.angular_acceleration + origin.angular_speed**2
@@ -177,9 +178,9 @@ def of_point(origin: MotionBounds, point: FloatArray) -> MotionBounds:
 
 
 def turning(
-    omega: FloatArray,
-    velocity: FloatArray,
-    rotation: FloatArray | None = None,
+    omega: Array,
+    velocity: Array,
+    rotation: Array | None = None,
     lengths: float = 0.0,
 ) -> MotionBounds:
     """Return the bounds for a point whose velocity turns with the body at a constant rate.
@@ -194,7 +195,7 @@ def turning(
     return MotionBounds(length(velocity), bend, rate, 0.0, axis, lengths)
 
 
-def bounds_of(path: object, first: float, last: float, point: FloatArray) -> MotionBounds:
+def bounds_of(path: object, first: float, last: float, point: Array) -> MotionBounds:
     """Return a path's bounds between two times [s] for a point fixed in its body.
 
     Raises TypeError if the path knows no bounds.

@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from standoff.checks.arrays import FloatArray, direction, finite
+from standoff.checks.arrays import direction, finite
 from standoff.checks.numbers import number
 from standoff.motion.bounds import (
     MotionBounds,
@@ -24,6 +24,7 @@ from standoff.motion.pose_function import path_of
 from standoff.motion.twist import Twist, TwistLike
 from standoff.motion.vectors import cross, length
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 
 @runtime_checkable
@@ -81,7 +82,7 @@ class Fixed(KeepsReadOnly):
         number(t, "t")
         return Twist.zero()
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         del first, last, point
         return MotionBounds(0.0, 0.0, 0.0, 0.0)
@@ -122,7 +123,7 @@ class ConstantTwist(KeepsReadOnly):
         """Return how the body moves at time `t` [s], in world axes."""
         return self._twist.in_world(self.pose(t))
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         v, omega = self._twist.v, self._twist.omega
         longest = max(abs(first), abs(last))
@@ -191,7 +192,7 @@ class Screw(KeepsReadOnly):
         arm = self.pose(t).translation - self._point
         return Twist(np.cross(self._omega, arm) + self._advance, self._omega)
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         arm = self._initial.apply(point) - self._point
         lengths = length(self._point) + length(self._initial.translation - self._point)
@@ -244,7 +245,7 @@ class Offset(KeepsReadOnly):
         arm = carrier.rotation @ self._offset.translation
         return Twist(twist.v + np.cross(twist.omega, arm), twist.omega)
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         carrier = bounds_of(self._path, first, last, self._offset.apply(point))
         # The carrier's distance is no more than that of the body and of the two together.
@@ -299,7 +300,7 @@ class Carried(KeepsReadOnly):
         v = outer.v + np.cross(outer.omega, turn @ within.translation) + turn @ inner.v
         return Twist(v, outer.omega + turn @ inner.omega)
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         inner = bounds_of(self._within, first, last, point)
         within = self._within.pose(first)

@@ -10,13 +10,14 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from standoff.checks.arrays import FloatArray, finite, numbers, text, unmasked
+from standoff.checks.arrays import finite, numbers, text, unmasked
 from standoff.checks.real_numbers import as_given, shape_of, shown
 from standoff.errors import StandoffError
 from standoff.motion.rotations import as_rotation, nearest_rotation
 from standoff.motion.tolerances import ORTHONORMALITY, QUATERNION_ROUNDING, UNIT_QUATERNION
 from standoff.motion.vectors import written
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 LAST_ROW = (0.0, 0.0, 0.0, 1.0)
 """Of every homogeneous matrix."""
@@ -52,8 +53,8 @@ class Pose(KeepsReadOnly):
         carry the mark.
     """
 
-    rotation: FloatArray
-    translation: FloatArray
+    rotation: Array
+    translation: Array
     repaired: bool
 
     # Without this NumPy would take a pose for an object array in ``pose @ array``.
@@ -64,7 +65,7 @@ class Pose(KeepsReadOnly):
         matrix, repaired = as_rotation(matrix)
         self._set(matrix, shift, repaired=repaired)
 
-    def _set(self, rotation: FloatArray, translation: FloatArray, *, repaired: bool) -> None:
+    def _set(self, rotation: Array, translation: Array, *, repaired: bool) -> None:
         rotation.setflags(write=False)
         translation.setflags(write=False)
         object.__setattr__(self, "rotation", rotation)
@@ -72,9 +73,7 @@ class Pose(KeepsReadOnly):
         object.__setattr__(self, "repaired", repaired)
 
     @classmethod
-    def from_checked(
-        cls, rotation: FloatArray, translation: FloatArray, *, repaired: bool = False
-    ) -> Pose:
+    def from_checked(cls, rotation: Array, translation: Array, *, repaired: bool = False) -> Pose:
         """Wrap float64 arrays known to be a pose, unchecked and uncopied; they become read-only.
 
         For results computed from poses in code that runs every frame; a caller's own numbers go
@@ -168,7 +167,7 @@ class Pose(KeepsReadOnly):
         return cls._from_quaternion(xyzw, translation)
 
     @classmethod
-    def _from_quaternion(cls, xyzw: FloatArray, translation: ArrayLike) -> Pose:
+    def _from_quaternion(cls, xyzw: Array, translation: ArrayLike) -> Pose:
         norm = float(np.linalg.norm(xyzw))
         defect = abs(norm - 1.0)
         if defect > UNIT_QUATERNION:
@@ -210,7 +209,7 @@ class Pose(KeepsReadOnly):
         return f"Pose.exp({written(turn, 1.0)}, {written(self.translation)})"
 
     @property
-    def matrix(self) -> FloatArray:
+    def matrix(self) -> Array:
         """The homogeneous matrix, shape (4, 4), a new array."""
         matrix = np.eye(4)
         matrix[:3, :3] = self.rotation
@@ -228,7 +227,7 @@ class Pose(KeepsReadOnly):
             return NotImplemented
         return Pose.from_checked(self.rotation @ other.rotation, self.apply(other.translation))
 
-    def apply(self, points: ArrayLike) -> FloatArray:
+    def apply(self, points: ArrayLike) -> Array:
         """Map points of the body to the world.
 
         Raises ValueError if the last axis does not have three components.
@@ -250,7 +249,7 @@ class Pose(KeepsReadOnly):
                 "points",
                 points,
             )
-        mapped: FloatArray = array @ self.rotation.T + self.translation
+        mapped: Array = array @ self.rotation.T + self.translation
         return mapped
 
 
@@ -282,7 +281,7 @@ def matrix_of(value: Any) -> Any:
     return value.as_matrix() if has_one else value
 
 
-def _numbers(rotation: RotationLike, translation: ArrayLike) -> tuple[FloatArray, FloatArray]:
+def _numbers(rotation: RotationLike, translation: ArrayLike) -> tuple[Array, Array]:
     if shape_of(rotation) == (4, 4):
         raise StandoffError(
             f"rotation has shape (4, 4), value {shown(rotation)}: give an array of 3 by 3 numbers, "

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import scipy
 
-from standoff.checks.arrays import FloatArray
 from standoff.checks.numbers import number, positive
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.twist import Twist, TwistLike
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 STEP = 2.0**-10
 """Between the poses of a difference [s]: fourth order leaves (ω step)⁴/30 of a speed that swings at
@@ -167,7 +167,7 @@ def _time(value: Any, name: str) -> float:
     return float(value) if endless else number(value, name)
 
 
-def _weights(offsets: list[float]) -> FloatArray:
+def _weights(offsets: list[float]) -> Array:
     """Return the weights of values that are 0 at 0, for the slope there of their polynomial."""
     return np.array(
         [

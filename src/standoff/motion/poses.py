@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike, NDArray
 
-from standoff.checks.arrays import FloatArray, finite, numbers
+from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import GREATEST
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -24,6 +24,7 @@ from standoff.motion.tolerances import (
     UNIT_QUATERNION,
 )
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 SEVEN = (
     "the order of a quaternion must be named: give so.Poses.from_xyzw(rows[:, 3:], rows[:, :3]) "
@@ -32,14 +33,14 @@ SEVEN = (
 """What is said of rows of seven numbers."""
 
 
-def has_last_row(matrices: FloatArray) -> NDArray[np.bool_]:
+def has_last_row(matrices: Array) -> NDArray[np.bool_]:
     """Is the last row of each matrix (n, 4, 4) that of a homogeneous one?"""
     with np.errstate(invalid="ignore"):
-        off: FloatArray = np.abs(matrices[:, 3] - LAST_ROW).max(axis=1)
+        off: Array = np.abs(matrices[:, 3] - LAST_ROW).max(axis=1)
     return off <= ORTHONORMALITY
 
 
-def matrices_of(rotations: FloatArray, translations: FloatArray) -> FloatArray:
+def matrices_of(rotations: Array, translations: Array) -> Array:
     """Homogeneous matrices (n, 4, 4) of rotations (n, 3, 3) and translations (n, 3) or (3,)."""
     matrices = np.zeros((len(rotations), 4, 4))
     matrices[:, :3, :3], matrices[:, :3, 3] = rotations, translations
@@ -72,8 +73,8 @@ class Poses(KeepsReadOnly):
         The mark `Pose.repaired` of each.
     """
 
-    rotations: FloatArray
-    translations: FloatArray
+    rotations: Array
+    translations: Array
     repaired: NDArray[np.bool_]
 
     def __init__(self, rotations: RotationLike, translations: ArrayLike) -> None:
@@ -81,17 +82,15 @@ class Poses(KeepsReadOnly):
         shifts = _shifts(translations, len(turns))
         self._take(turns, shifts, zip(turns, shifts, strict=True))
 
-    def _set(
-        self, rotations: FloatArray, translations: FloatArray, repaired: NDArray[np.bool_]
-    ) -> None:
+    def _set(self, rotations: Array, translations: Array, repaired: NDArray[np.bool_]) -> None:
         for array in (rotations, translations, repaired):
             array.setflags(write=False)
         self.rotations, self.translations, self.repaired = rotations, translations, repaired
 
     def _take(
         self,
-        rotations: FloatArray,
-        translations: FloatArray,
+        rotations: Array,
+        translations: Array,
         given: Iterable[PoseLike],
         wrong: NDArray[np.bool_] | None = None,
     ) -> None:
@@ -196,7 +195,7 @@ class Poses(KeepsReadOnly):
         return cls._from_quaternions(rows, translations)
 
     @classmethod
-    def _from_quaternions(cls, xyzw: FloatArray, translations: ArrayLike) -> Poses:
+    def _from_quaternions(cls, xyzw: Array, translations: ArrayLike) -> Poses:
         shifts = _shifts(translations, len(xyzw))
         with np.errstate(invalid="ignore", over="ignore"):  # of numbers that are refused below
             off = np.abs(np.linalg.norm(xyzw, axis=1) - 1.0)
@@ -210,7 +209,7 @@ class Poses(KeepsReadOnly):
         return made
 
     @property
-    def matrices(self) -> FloatArray:
+    def matrices(self) -> Array:
         """The homogeneous matrices, shape (n, 4, 4), a new array."""
         return matrices_of(self.rotations, self.translations)
 
@@ -244,7 +243,7 @@ PosesLike: TypeAlias = (
 """What stands for many poses, or for one that is used for all rows: see `standoff.distances`."""
 
 
-def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
+def _rows(value: Any, name: str, shape: tuple[int, ...]) -> Array:
     """A new array of n rows of the given shape."""
     array = numbers(value, name, None)
     if array.ndim == 0 or array.shape[1:] != shape or not len(array):
@@ -255,7 +254,7 @@ def _rows(value: Any, name: str, shape: tuple[int, ...]) -> FloatArray:
     return array
 
 
-def _shifts(translations: ArrayLike, count: int) -> FloatArray:
+def _shifts(translations: ArrayLike, count: int) -> Array:
     """A new array of `count` translations, from as many or from one."""
     if shape_of(translations) == (3,):
         return np.tile(finite(translations, "translations", (3,)), (count, 1))

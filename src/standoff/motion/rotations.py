@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from standoff.checks.arrays import FloatArray, text
+from standoff.checks.arrays import text
 from standoff.errors import StandoffError
 from standoff.motion.tolerances import FLAT, ORTHONORMALITY, ROUNDED
+from standoff.typing import Array
 
 _STEPS = 2
 """Each squares the defect and multiplies it by three eighths: 1e-5, 4e-11, below rounding."""
 
 
-def _entries(matrices: FloatArray) -> Sequence[Any]:
+def _entries(matrices: Array) -> Sequence[Any]:
     """The nine entries, row by row: numbers of one matrix, arrays of a stack.
 
     NumPy multiplies small matrices one by one; sums of products of their entries take a tenth of
@@ -41,19 +42,19 @@ def _excess(entries: Sequence[Any]) -> tuple[Any, ...]:
     )
 
 
-def defect(matrices: FloatArray) -> FloatArray:
+def defect(matrices: Array) -> Array:
     """Return the greatest component of ``RᵀR − I`` of each matrix, shape (...)."""
-    greatest: FloatArray = np.abs(_excess(_entries(matrices))).max(axis=0)
+    greatest: Array = np.abs(_excess(_entries(matrices))).max(axis=0)
     return greatest.reshape(matrices.shape[:-2])
 
 
-def mirrored(matrices: FloatArray) -> Any:
+def mirrored(matrices: Array) -> Any:
     """Tell of each matrix whether its determinant is below 0, shape (...)."""
     a, b, c, d, e, f, g, h, i = _entries(matrices)
     return a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g) < 0.0
 
 
-def without_rounding(matrices: FloatArray) -> FloatArray:
+def without_rounding(matrices: Array) -> Array:
     """Return the rotations nearest to matrices with a defect of `ROUNDED` or less.
 
     By steps of Newton and Schulz, X ← X − X (XᵀX − 1)/2, which end at the same orthogonal factor
@@ -75,7 +76,7 @@ def without_rounding(matrices: FloatArray) -> FloatArray:
     return np.array(entries).T.reshape(matrices.shape)
 
 
-def as_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
+def as_rotation(matrix: Array) -> tuple[Array, bool]:
     """Return the rotation that a matrix is, or was before it was rounded, and whether it was
     rounded.
 
@@ -103,7 +104,7 @@ def as_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
     return (without_rounding(matrix), True) if off > ORTHONORMALITY else (matrix, False)
 
 
-def nearest_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
+def nearest_rotation(matrix: Array) -> tuple[Array, bool]:
     """Return the rotation nearest to any one matrix, in the sum of squares, and whether it differs.
 
     Raises ValueError if the matrix is flat or mirrored.
@@ -119,7 +120,7 @@ def nearest_rotation(matrix: FloatArray) -> tuple[FloatArray, bool]:
             "rotation",
             matrix,
         )
-    nearest: FloatArray = left @ right
+    nearest: Array = left @ right
     if mirrored(nearest):
         raise StandoffError(
             f"rotation {text(matrix)} is mirrored: its determinant is below 0, and no rotation is "

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from standoff.checks.arrays import FloatArray, finite
+from standoff.checks.arrays import finite
 from standoff.checks.numbers import GREATEST, number
 from standoff.errors import StandoffError
 from standoff.motion.bounds import MotionBounds, turning
@@ -19,6 +19,7 @@ from standoff.motion.tolerances import HALF_TURN_ANGLE, NEAR_HALF_TURN
 from standoff.motion.twist import Twist, screws
 from standoff.motion.vectors import cross, length
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 FASTER = 10.0
 """A screw is at most this much faster than the distances of its ends from the origin over its
@@ -78,7 +79,7 @@ class PoseSamples(KeepsReadOnly):
             _ = self._screws
 
     @cached_property
-    def _screws(self) -> tuple[FloatArray, FloatArray]:
+    def _screws(self) -> tuple[Array, Array]:
         """The twists (v, ω) from each sample to the next, (n − 1, 3), in body axes."""
         steps = np.diff(self.times)
         v, omega = screws(self._stack.rotations, self._stack.translations, steps)
@@ -170,7 +171,7 @@ class PoseSamples(KeepsReadOnly):
         index, seconds = self._interval(t)
         return self._twist(index).in_world(self.pose(seconds))
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s], within one interval of the samples.
 
         Raises ValueError if a sample lies between the two, or they are outside the samples.
@@ -203,7 +204,7 @@ class PoseSamples(KeepsReadOnly):
         return [float(t) for t in self.times[begin:stop]]
 
 
-def _check_times(times: FloatArray) -> None:
+def _check_times(times: Array) -> None:
     if len(times) < 2:
         raise StandoffError(
             f"{len(times)} samples do not make a motion: give at least two, or use Fixed",

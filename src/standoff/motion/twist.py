@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from standoff.checks.arrays import FloatArray, finite, text, unmasked
+from standoff.checks.arrays import finite, text, unmasked
 from standoff.checks.names import choice
 from standoff.checks.numbers import number, positive
 from standoff.checks.real_numbers import as_given, shown
@@ -18,6 +18,7 @@ from standoff.errors import StandoffError
 from standoff.motion.pose import Pose, PoseLike
 from standoff.motion.vectors import written
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 Frame: TypeAlias = Literal["world", "body"]
 """The axes in which a twist's components are given."""
@@ -48,8 +49,8 @@ class Twist(KeepsReadOnly):
     frame : {"world", "body"}
     """
 
-    v: FloatArray
-    omega: FloatArray
+    v: Array
+    omega: Array
     frame: Frame
 
     def __init__(self, v: ArrayLike, omega: ArrayLike, frame: Frame = "world") -> None:
@@ -118,7 +119,7 @@ class Twist(KeepsReadOnly):
         return cls(v[0], omega[0], "body")
 
     @classmethod
-    def from_checked(cls, v: FloatArray, omega: FloatArray, frame: Frame = "world") -> Twist:
+    def from_checked(cls, v: Array, omega: Array, frame: Frame = "world") -> Twist:
         """Wrap float64 arrays known to be a twist, unchecked and uncopied; they become read-only.
 
         As `Pose.from_checked`.
@@ -154,7 +155,7 @@ class Twist(KeepsReadOnly):
         placed = Pose.of(pose)
         seconds = number(duration, "duration")
         turn, shift = self.omega * seconds, self.v * seconds
-        rotation: FloatArray = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
+        rotation: Array = scipy.spatial.transform.Rotation.from_rotvec(turn).as_matrix()
         if self.frame == "world":
             return Pose.from_checked(rotation @ placed.rotation, placed.translation + shift)
         return placed @ Pose.from_checked(rotation, _shear(turn, shift))
@@ -172,20 +173,20 @@ _ACCEPTED = "give a Twist, a pair (v, ω) of three numbers each, or six numbers 
 # along the axis they are the identity. Written with n, no term loses digits at small angles.
 
 
-def _shear(turn: FloatArray, shift: FloatArray) -> FloatArray:
+def _shear(turn: Array, shift: Array) -> Array:
     angle = math.hypot(*turn)
     if angle == 0.0:
         return shift
     axis = turn / angle
     real = math.sin(angle) / angle
     imaginary = 2.0 * math.sin(0.5 * angle) ** 2 / angle
-    sheared: FloatArray = (
+    sheared: Array = (
         real * shift + imaginary * np.cross(axis, shift) + (1.0 - real) * (axis @ shift) * axis
     )
     return sheared
 
 
-def _unshear(turns: FloatArray, translations: FloatArray) -> FloatArray:
+def _unshear(turns: Array, translations: Array) -> Array:
     """V⁻¹ of stacks (n, 3)."""
     # The library of C, by element: NumPy's own vary by a rounding with the processor.
     angles = np.array(list(map(math.hypot, *turns.T.tolist())))
@@ -194,16 +195,14 @@ def _unshear(turns: FloatArray, translations: FloatArray) -> FloatArray:
     axes = turns / angles[:, None]
     real = 0.5 * angles / np.array(list(map(math.tan, (0.5 * angles).tolist())))
     along = (1.0 - real) * (axes[:, None, :] @ translations[:, :, None])[:, 0, 0]
-    unsheared: FloatArray = (
+    unsheared: Array = (
         real[:, None] * translations - 0.5 * np.cross(turns, translations) + along[:, None] * axes
     )
     unsheared[still] = translations[still]
     return unsheared
 
 
-def screws(
-    rotations: FloatArray, translations: FloatArray, durations: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def screws(rotations: Array, translations: Array, durations: Array) -> tuple[Array, Array]:
     """Return the twists (v, ω), body axes, of the screws from each of n poses to the next.
 
     Parameters

@@ -9,7 +9,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from standoff.checks.arrays import FloatArray, direction, finite
+from standoff.checks.arrays import direction, finite
 from standoff.checks.names import choice
 from standoff.checks.numbers import not_negative, number, positive
 from standoff.motion.bounds import MotionBounds
@@ -17,6 +17,7 @@ from standoff.motion.pose import Pose
 from standoff.motion.twist import Twist
 from standoff.motion.vectors import length
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 Orientation: TypeAlias = Literal["fixed", "turning"]
 """Whether a winding body keeps the world's axes, or turns once with each winding."""
@@ -70,7 +71,7 @@ class Helix(KeepsReadOnly):
         self._phase = number(phase, "phase")
         self._turning = _turns(orientation)
 
-    def _radial_and_tangential(self, seconds: float) -> tuple[FloatArray, FloatArray]:
+    def _radial_and_tangential(self, seconds: float) -> tuple[Array, Array]:
         angle = self._phase + self._rate * seconds
         cosine, sine = math.cos(angle), math.sin(angle)
         return (
@@ -93,7 +94,7 @@ class Helix(KeepsReadOnly):
         v = self._radius * self._rate * tangential + self._climb * self._axis
         return Twist(v, self._rate * self._axis if self._turning else np.zeros(3))
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         lengths = length(self._centre) + self._radius
         lengths += abs(self._climb) * max(abs(first), abs(last))
@@ -154,7 +155,7 @@ class Spiral(KeepsReadOnly):
         self._phase = number(phase, "phase")
         self._turning = _turns(orientation)
 
-    def _polar(self, seconds: float) -> tuple[float, FloatArray, FloatArray]:
+    def _polar(self, seconds: float) -> tuple[float, Array, Array]:
         turned = self._rate * seconds
         cosine, sine = math.cos(self._phase + turned), math.sin(self._phase + turned)
         radial, tangential = np.array([cosine, sine, 0.0]), np.array([-sine, cosine, 0.0])
@@ -175,7 +176,7 @@ class Spiral(KeepsReadOnly):
         v = self._rate * (self._growth * radial + distance * tangential)
         return Twist(v, (0.0, 0.0, self._rate if self._turning else 0.0))
 
-    def bounds(self, first: float, last: float, point: FloatArray) -> MotionBounds:
+    def bounds(self, first: float, last: float, point: Array) -> MotionBounds:
         """Return bounds from time `first` to `last` [s] for a point of the body, (3,)."""
         # In polar axes the point stays at (distance + x, y); its velocity is rate times
         # (growth - y, distance + x), its acceleration rate² times (-distance - x, 2 growth - y).
@@ -204,7 +205,7 @@ def _turns(orientation: Orientation) -> bool:
     return orientation == "turning"
 
 
-def _across(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _across(axis: Array) -> tuple[Array, Array]:
     """Return two unit vectors that make a right-handed frame with the unit vector `axis`.
 
     They are x and y turned with z by the least turn to an axis above the plane z = 0; for one

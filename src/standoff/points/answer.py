@@ -6,15 +6,14 @@ from dataclasses import dataclass, fields
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import PlainData, plain, without_roundoff
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.branches import BranchCounts, Change
 from standoff.tracking.status import Status
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Kind = Literal["medial", "crossing", "voronoi"]
 
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.kernels.tolerances import SLOPE
@@ -18,8 +17,8 @@ from standoff.points.tolerances import EQUAL_DEPTHS, RELEASE_SLOPES
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.branches import Branch
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 S = TypeVar("S")
 
 HOME = np.eye(4)

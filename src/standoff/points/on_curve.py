@@ -6,15 +6,11 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.points.planar_boundary import PlanarBoundary
 from standoff.points.state import Leg
 from standoff.points.tolerances import PARAMETER_AT_REST
 from standoff.tracking.state import TrackerState
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 MINIMUM_STEPS = 60
 """Most Newton steps to a minimum: more than any start between two samples was seen to need."""

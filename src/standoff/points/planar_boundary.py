@@ -18,8 +18,8 @@ from standoff.bodies.body import Body
 from standoff.kernels.entries.queries import planar_edge_normal
 from standoff.points.tolerances import ON_BOUNDARY, SHORTEST_CHORD
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Place = tuple[int, float]
 """An edge and a parameter on it."""
 

@@ -14,7 +14,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
@@ -34,8 +33,8 @@ from standoff.tracking.laws import PaperLaw
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Minima = Branches[OnCurve]
 
 POINT = ("vertex", 0)

@@ -26,9 +26,8 @@ from standoff.points.switches import Way
 from standoff.points.tracker import PointTracker
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.inputs import flat_pose, flat_twist
+from standoff.typing import Array
 from standoff.wording import counted, short_name
-
-Array = NDArray[np.float64]
 
 
 class PointVisit(NamedTuple):

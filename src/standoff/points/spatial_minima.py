@@ -11,7 +11,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
@@ -27,8 +26,8 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.state import TrackerState
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Minima = Branches[TrackerState]
 
 FAR = 4.0

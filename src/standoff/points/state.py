@@ -7,17 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.bodies.features import Feature
 from standoff.points.answer import Minimum, PointCounts, PointEvent, PointProximity
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.branches import Branches, End
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.kernels.tolerances import SLOPE
 from standoff.points.answer import PointEvent
@@ -27,8 +26,7 @@ from standoff.recording.tolerances import (
     RATE_STENCIL,
     SWITCH_PROOF,
 )
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 ROOT_TRIES = 3
 """Roots that may fail their proof before the halving goes on alone."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
@@ -23,8 +22,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW, checked_law
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @hides("minima", "step_along")

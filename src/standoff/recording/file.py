@@ -26,8 +26,7 @@ from standoff.tracking.law_options import options_of
 from standoff.tracking.laws import LAWS, PaperLaw, every_option
 from standoff.tracking.rows import Counts
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 FORMAT = "standoff-recording"
 FORMAT_VERSION = 4

@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature, feature_of
 from standoff.kernels.tolerances import SLOPE
@@ -36,8 +35,8 @@ from standoff.tracking.rows import AnswerRows, StateRow
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Motion = tuple[Array, Array, Array, Array]
 """Flat poses of A and B, (12,), and their twists, (6,)."""
 

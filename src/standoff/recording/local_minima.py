@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.tracking.branches import NONE, Birth, End
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Kind = Literal["birth", "end", "switch", "handover"]
 
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.recording.recorded import RecordedFrames
 from standoff.tracking.branches import NONE
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 
 MINIMA_COLOUR = "#009E73"
 """Of Okabe and Ito, as those of the picture."""

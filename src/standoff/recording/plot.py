@@ -7,12 +7,12 @@ from itertools import groupby
 from typing import BinaryIO, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.errors import of_extra
 from standoff.recording.minima_plot import draw_minima
 from standoff.recording.recorded import RecordedFrames
+from standoff.typing import Array
 
 with of_extra("matplotlib"):
     from matplotlib import colormaps
@@ -22,7 +22,6 @@ with of_extra("matplotlib"):
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
-Array = NDArray[np.float64]
 Value = TypeVar("Value")
 Colour: TypeAlias = tuple[float, float, float, float]
 

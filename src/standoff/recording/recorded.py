@@ -20,9 +20,8 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import every_option, law_of_facts
 from standoff.tracking.rows import Counts
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.wording import counted, short_name
-
-Array = NDArray[np.float64]
 
 
 class Placing(Protocol):

@@ -21,6 +21,7 @@ from standoff.recording.recorded import RunInfo as RunInfo
 from standoff.tracking.pair_plot import view_angles
 from standoff.tracking.rows import AnswerRows
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.whole_files import file_name, write_whole
 
 if TYPE_CHECKING:
@@ -29,8 +30,6 @@ if TYPE_CHECKING:
 
     from standoff.automaton.graph import Automaton
     from standoff.automaton.parallel import SolidAutomaton
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -13,15 +13,13 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_conormal, edge_jet, end_direction, feature_jet
 from standoff.recording.tolerances import FLAT_DIRECTION, HELD_AT_REST
 from standoff.tracking.rows import AnswerRows
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 HELD_STEPS = 20
 """Most steps of the held minimum: from a neighbouring frame 2 to 4 are taken."""

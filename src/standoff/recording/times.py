@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.recording.tolerances import WHOLE_STEPS
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 MOST_FRAMES = 10_000_000
 """Most frames of one run. A frame is kept in some 600 bytes, so this many take 6 GB; a greater

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive
 from standoff.checks.real_numbers import shown
@@ -30,9 +29,8 @@ from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 from standoff.version import __version__
-
-Array = NDArray[np.float64]
 
 BLOCK = 128
 """Frames of one compiled loop. It is run again up to a frame that needs a look, one with a switch

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.world.pair_answer import PairAnswer
 
 if TYPE_CHECKING:
     from standoff.world.solid_answer import SolidPairAnswer
-
-Array = NDArray[np.float64]
 
 
 class Flag(NamedTuple):

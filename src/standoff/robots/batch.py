@@ -12,8 +12,6 @@ from standoff.robots.answer import RobotAnswer
 from standoff.tracking.status import Status
 from standoff.wording import counted
 
-Array = NDArray[np.float64]
-
 
 class RobotAnswers(KeepsReadOnly):
     """Nearest pairs of a robot at m configurations, in arrays of m rows.

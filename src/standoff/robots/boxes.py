@@ -10,7 +10,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.best_first import Part, Searched, best_first
 from standoff.checks.arrays import finite, numbers
@@ -24,9 +23,7 @@ from standoff.robots.motions import Motions
 from standoff.robots.proof import BoxCounts, Boxes, BoxProof, Verdict, Witness
 from standoff.robots.robot_model import RobotModel
 from standoff.robots.sight import Apart, Sight, closing, some_of
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 BATCH = 64
 """Boxes that are split together."""

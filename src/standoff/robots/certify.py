@@ -12,7 +12,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import not_negative, whole_number
 from standoff.progress import Progress
@@ -26,10 +25,7 @@ from standoff.robots.proof import How, PathCounts, PathProof, Verdict, Witness
 from standoff.robots.robot_model import RobotModel
 from standoff.robots.sight import Apart, Middle, Sight, closing, some_of
 from standoff.robots.watched import turned
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from standoff.typing import Array, Bools, Ints
 
 BATCH = 2048
 """Intervals that are looked at together, the earliest first: arrays of so many rows cost little

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
 from standoff.robots.joints import JointKind, Joints
 from standoff.robots.tolerances import UNIT_LENGTH
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 UNIT_PARTS = {
     JointKind.BALL: (0, 4, "quaternion"),

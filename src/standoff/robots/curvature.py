@@ -14,14 +14,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.robots.configurations import made_unit
 from standoff.robots.motions import Motions, motions_of
 from standoff.robots.robot import Robot
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class Column(NamedTuple):

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.motion import Pose
 from standoff.robots.kinematics import Motion
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def frame(rotation: Any, translation: Any) -> Array:

@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.typing import Array, Ints
 from standoff.world import Compound
 from standoff.world.shapes import Shape
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 WORLD = -1
 """The joint of what is fixed in the world."""

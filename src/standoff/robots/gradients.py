@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.robots.kinematics import Motion
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def rows_by_velocity(

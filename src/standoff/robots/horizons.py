@@ -6,15 +6,13 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.read_only import KeepsReadOnly
 from standoff.robots.geoms import Geoms
 from standoff.robots.tolerances import FIRST_HORIZON, WIDER
+from standoff.typing import Ints
 from standoff.world import World
 from standoff.world.packed import pieces_of
-
-Ints = NDArray[np.int64]
 
 KEPT = 16
 """Worlds that are kept beside that of the robot's own horizon: those made last."""

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.bodies.hulls.qhull import hull_triangles
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 SPOTS, SAMPLES = 4096, 40_000
 """Points of the hull, and of the mesh beside its corners: evenly by area."""

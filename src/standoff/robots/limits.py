@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.robots.certify_tolerances import LIMIT_SLACK
 from standoff.robots.robot_model import RobotModel
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def check_limits(robot: RobotModel, q: Array, argument: str, times: Any = None) -> None:

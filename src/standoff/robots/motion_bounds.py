@@ -24,15 +24,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.robots.certify_tolerances import BOUND_INFLATION, REACH_ROUNDOFF
 from standoff.robots.motions import Frames
 from standoff.robots.watched import Seen, Watched
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from standoff.typing import Array, Bools, Ints
 
 
 class Reaches(NamedTuple):

@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.robots.joints import JointKind, Joints
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 WORLD = -1
 """The frame of the world among those of the motions: the last one."""

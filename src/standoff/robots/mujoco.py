@@ -25,13 +25,12 @@ from standoff.robots.loaded import Loaded, loaded
 from standoff.robots.mujoco_pairs import pairs_left_out, watched_pairs
 from standoff.robots.report import GIVEN, GeomReport
 from standoff.robots.shapes import Meshes, Source, made_geoms
+from standoff.typing import Array, Ints
 from standoff.wording import counted
 
 with of_extra("MuJoCo", "mujoco"):
     import mujoco
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 KINDS = {
     mujoco.mjtGeom.mjGEOM_PLANE: "plane",

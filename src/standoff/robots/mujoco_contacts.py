@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.mujoco_mixing import Mixed, mixed
@@ -20,12 +19,12 @@ from standoff.robots.report import GIVEN
 from standoff.robots.robot import Robot
 from standoff.robots.rows import RobotRows
 from standoff.robots.tolerances import CONTACT_HORIZON
+from standoff.typing import Array
 from standoff.world.packed import pieces_of
 
 with of_extra("MuJoCo", "mujoco"):
     import mujoco
 
-Array = NDArray[np.float64]
 
 POINTED = ("sphere", "ellipsoid")
 """Kinds that touch any convex body at one point."""

@@ -9,15 +9,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import of_extra
 from standoff.robots.tolerances import LEAST_FRICTION
+from standoff.typing import Array
 
 with of_extra("MuJoCo", "mujoco"):
     import mujoco
-
-Array = NDArray[np.float64]
 
 
 class Mixed(NamedTuple):

@@ -6,14 +6,13 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import of_extra
+from standoff.typing import Bools
 
 with of_extra("MuJoCo", "mujoco"):
     import mujoco
 
-Mask = NDArray[np.bool_]
 
 HALF_SPACES = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 """Kinds of which MuJoCo takes no two together."""
@@ -53,7 +52,7 @@ def pairs_left_out(model: Any) -> dict[tuple[int, int], str]:
     return {(i, j): str(found[i, j]) for i, j in combinations(range(model.ngeom), 2) if found[i, j]}
 
 
-def _left_out(model: Any, nested: Mask) -> Any:
+def _left_out(model: Any, nested: Bools) -> Any:
     """(ngeom, ngeom): why two geometries are left out, empty where they are not; ``nested``
     (nbody, nbody): which bodies are parent and child."""
     n, bodies = model.ngeom, model.geom_bodyid

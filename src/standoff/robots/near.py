@@ -5,17 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.checks.numbers import positive
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.robots.robot import Robot
 from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
-
-Array = NDArray[np.float64]
 
 
 class Near:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.robots.configurations import made_unit
@@ -13,12 +12,11 @@ from standoff.robots.curvature import Twists
 from standoff.robots.robot import Robot
 from standoff.robots.tolerances import TIED, TIED_APART, TURN_LOST
 from standoff.tracking.derivatives import Smoothness, flagged_gradient
+from standoff.typing import Array
 from standoff.world import World
 from standoff.world.answer import WorldAnswer
 from standoff.world.pair_answer import PairAnswer, convex
 from standoff.world.solid_pairs import refuse_solids
-
-Array = NDArray[np.float64]
 
 TWO_PIECES = "two pairs of pieces are equally near."
 

@@ -8,7 +8,6 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import number
@@ -17,10 +16,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.robots.certify_tolerances import SPEED_SLACK
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.motions import Motions
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-
+from standoff.typing import Array, Ints
 
 FIRST_LOOKS = 65
 """Instants at which a function is tried before the proof begins: its limits and its speeds."""

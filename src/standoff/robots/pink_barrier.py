@@ -5,17 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import number, positive, whole_number
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.near import Near
 from standoff.robots.robot import Robot
+from standoff.typing import Array
 
 with of_extra("Pink", "pink"):
     from pink.barriers import Barrier
-
-Array = NDArray[np.float64]
 
 
 class PinkBarrier(Barrier):  # type: ignore[misc]

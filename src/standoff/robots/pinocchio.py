@@ -8,7 +8,6 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError, of_extra
@@ -22,13 +21,12 @@ from standoff.robots.pinocchio_joints import Rows, read_joints
 from standoff.robots.pinocchio_shapes import Shape, read_shape
 from standoff.robots.report import NO_SUCH_PAIR
 from standoff.robots.shapes import Meshes, Source, made_geoms
+from standoff.typing import Array, Ints
 
 with of_extra("Pinocchio", "pinocchio"):
     import coal  # noqa: F401 - its classes are those of the geometries
     import pinocchio as pin
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 NEUTRAL = "pinocchio.neutral(model)"
 
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.joints import SINGLE, JointKind, Joints
 from standoff.robots.mimics import Followed, read_as
 from standoff.robots.tolerances import UNLIMITED
+from standoff.typing import Array, Ints
 
 with of_extra("Pinocchio", "pinocchio"):
     import pinocchio as pin
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 X, Y, Z = np.eye(3)
 HINGE, SLIDE, CONTINUOUS = JointKind.HINGE, JointKind.SLIDE, JointKind.CONTINUOUS

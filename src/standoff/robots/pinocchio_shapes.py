@@ -6,15 +6,12 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import of_extra
+from standoff.typing import Array, Ints
 
 with of_extra("Pinocchio", "pinocchio"):
     import coal
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Shape(NamedTuple):

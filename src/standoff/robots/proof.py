@@ -8,14 +8,12 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.plain_data import PlainData, plain
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array, Ints
 from standoff.wording import at_least, counted
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Names = tuple[str, str]
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite_rows
 from standoff.checks.numbers import positive, whole_number
@@ -25,11 +24,11 @@ from standoff.robots.robot_model import RobotModel
 from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
 from standoff.tracking.threads import in_parts
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.robots.robot_page import RobotPage
 
-Array = NDArray[np.float64]
 Meshes = Any
 """None, "hull", or a mapping of names of geometries to "hull", a Body or a Compound."""
 

@@ -7,7 +7,6 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive
 from standoff.errors import StandoffError
@@ -21,10 +20,9 @@ from standoff.robots.obstacles import Obstacles, with_obstacles
 from standoff.robots.report import STILL, RobotReport, of_obstacles
 from standoff.robots.rows import Mounted, RobotRows
 from standoff.shown_names import hides
+from standoff.typing import Array
 from standoff.wording import counted
 from standoff.world import World
-
-Array = NDArray[np.float64]
 
 
 @hides("loaded", "nearest_rows")

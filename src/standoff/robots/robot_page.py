@@ -9,20 +9,16 @@ from collections.abc import Sequence
 from html import escape
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.errors import of_extra
 from standoff.robots.proof import PathProof
 from standoff.robots.shown_robot import ShownRobot
+from standoff.typing import Array
 from standoff.view.motion_panel import Later
 from standoff.view.moving_world import Course
 from standoff.view.player import Player
 from standoff.view.served import ServedPage
 from standoff.view.world_panel import Asks, WorldPanel
 from standoff.view.world_stage import WorldStage
-
-Array = NDArray[np.float64]
 
 STEPS = 1000
 """Steps of a slider, at least."""

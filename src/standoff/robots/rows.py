@@ -15,11 +15,10 @@ from standoff.robots.kinematics import Motion
 from standoff.robots.tolerances import TURN_LOST
 from standoff.shown_names import hides
 from standoff.tracking.derivatives import Smoothness
+from standoff.typing import Array
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
 from standoff.world.pair_arrays import derived
-
-Array = NDArray[np.float64]
 
 
 class Mounted(NamedTuple):

@@ -6,7 +6,6 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import number, positive
@@ -16,11 +15,10 @@ from standoff.robots.near import Near
 from standoff.robots.robot import Robot
 from standoff.robots.rows import RobotRows
 from standoff.robots.tolerances import RATE_LOST
+from standoff.typing import Array
 
 with of_extra("qpsolvers", "qp"):
     import qpsolvers
-
-Array = NDArray[np.float64]
 
 
 class FilterStatus(Enum):

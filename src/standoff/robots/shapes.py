@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
@@ -17,11 +16,10 @@ from standoff.errors import StandoffError, StandoffTypeError
 from standoff.robots.geoms import Geoms
 from standoff.robots.hull_gap import hull_gap
 from standoff.robots.report import EXACT, GIVEN, HULL, SKIPPED, UNSEEN, GeomReport
+from standoff.typing import Array, Ints
 from standoff.world import Compound
 from standoff.world.shapes import Shape, as_shape
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Meshes = Any
 
 MOST_NAMED = 8

@@ -6,7 +6,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shape_of, shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -15,9 +14,8 @@ from standoff.robots.path_kinds import JointPath
 from standoff.robots.paths import joint_path
 from standoff.robots.proof import PathProof
 from standoff.robots.robot_model import RobotModel
+from standoff.typing import Array
 from standoff.view.moving_world import MovingWorld
-
-Array = NDArray[np.float64]
 
 FRAME = 0.04
 """Time between two frames of a path [s]: the page looks as often."""

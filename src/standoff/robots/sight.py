@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.tolerances import EPS
@@ -27,12 +26,9 @@ from standoff.robots.motions import WORLD, Frames, motions_of
 from standoff.robots.proof import Witness
 from standoff.robots.robot_model import RobotModel
 from standoff.robots.watched import Seen, Watched, watched_of
+from standoff.typing import Array, Bools, Ints
 from standoff.world import World
 from standoff.world.many_frames import answers_at, are_solids, pieces_placed
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 class Apart(NamedTuple):

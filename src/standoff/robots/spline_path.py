@@ -5,15 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.robots.certify_tolerances import SPEED_SLACK
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.path_kinds import JointPath
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class SplinePath(JointPath):

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.robots.kinematics import Motion
+from standoff.typing import Array
 from standoff.world.state import WorldState
-
-Array = NDArray[np.float64]
 
 
 class RobotState(NamedTuple):

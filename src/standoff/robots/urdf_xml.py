@@ -10,15 +10,13 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.names import nearest, one_of
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.motion import Pose
 from standoff.robots.frames import frame
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 LIMITED = ("revolute", "prismatic")

@@ -13,10 +13,8 @@ from numpy.typing import NDArray
 
 from standoff.kernels.world import arrays as W
 from standoff.robots.motions import WORLD, Frames, Motions
+from standoff.typing import Array, Ints
 from standoff.world.model import Model
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Cores(NamedTuple):

@@ -11,8 +11,8 @@ from standoff.recording.times import MOST_FRAMES
 from standoff.recording.tolerances import WHOLE_STEPS
 from standoff.scene.errors import SceneError
 from standoff.scene.motions import Motion
-from standoff.scene.reader import Array
 from standoff.scene.settings import DEFAULT_STEP, SAMPLES, TrackSettings
+from standoff.typing import Array
 
 
 def time_span(motions: Iterable[Motion]) -> tuple[float, float]:

@@ -28,7 +28,8 @@ from standoff.motion import (
 from standoff.scene.degrees import ENDING, in_radians, with_degrees
 from standoff.scene.files import existing_file
 from standoff.scene.placements import in_space, read_pose
-from standoff.scene.reader import Array, Table
+from standoff.scene.reader import Table
+from standoff.typing import Array
 
 FILE_START = "file"
 """Value of ``start`` that keeps the time stamps as the file gives them."""

@@ -14,7 +14,7 @@ from standoff.cad.files import ENDINGS as CAD
 from standoff.checks.units import conversion
 from standoff.errors import BodyError
 from standoff.motion import Pose
-from standoff.scene.reader import Array
+from standoff.typing import Array
 from standoff.world import Compound, compound
 from standoff.world.shapes import Shape, as_shape
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from standoff.geometry import BezierPatch, FormulaSurface, NurbsSurface, Surface
-from standoff.geometry.validation import Array
 from standoff.nesting import JSON, text_problem
 from standoff.scene.errors import SceneError
 from standoff.scene.files import beyond_python, existing_file
 from standoff.scene.reader import Table, shown
+from standoff.typing import Array
 
 FORMAT = "standoff-patches"
 FORMAT_VERSION = 1

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.motion import Pose
-from standoff.scene.reader import Array, Table
+from standoff.scene.reader import Table
+from standoff.typing import Array
 
 ORIENTATIONS = (
     *("quaternion_wxyz", "quaternion_xyzw", "rotation_vector", "rotation_vector_degrees"),

@@ -11,15 +11,14 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from standoff.checks import real_numbers
 from standoff.checks.names import nearest, one_of
 from standoff.errors import StandoffError
 from standoff.scene.errors import SceneError
+from standoff.typing import Array
 from standoff.wording import printable
 
-Array = npt.NDArray[np.float64]
 Value = TypeVar("Value")
 
 SHOWN_CHARACTERS = 60

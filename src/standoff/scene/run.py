@@ -13,12 +13,12 @@ from standoff.progress import Progress
 from standoff.recording import Recording
 from standoff.recording.track import track_along
 from standoff.scene.errors import SceneError
-from standoff.scene.reader import Array
 from standoff.scene.scene import Scene
 from standoff.scene.settings import TrackSettings
 from standoff.scene.solid_pairs import made_tracker
 from standoff.solids.answer import SolidProximity
 from standoff.tracking import Proximity, Tracker, distance
+from standoff.typing import Array
 
 
 def query(scene: Scene, time: float | None = None) -> tuple[float, Proximity | SolidProximity]:

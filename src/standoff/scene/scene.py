@@ -17,9 +17,10 @@ from standoff.scene.file_content import PAIR_KEYS, FileContent, of_a_simulation,
 from standoff.scene.frames import check_instant, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
 from standoff.scene.pairs import Pair, read_pairs
-from standoff.scene.reader import Array, Table, shown, unknown_name
+from standoff.scene.reader import Table, shown, unknown_name
 from standoff.scene.settings import DEFAULT_STEP, TrackSettings, read_settings
 from standoff.scene.worlds import WorldRules, made_world, read_world
+from standoff.typing import Array
 from standoff.world import Compound, World
 from standoff.world.shapes import Shape
 

@@ -11,7 +11,8 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.scene.curves import read_curve
 from standoff.scene.patches import read_patches
-from standoff.scene.reader import Array, Table
+from standoff.scene.reader import Table
+from standoff.typing import Array
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns the plane of scene curves, x and y, to that of profiles, x and z."""

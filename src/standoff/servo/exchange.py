@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from standoff.kernels.dynamics import servo_arrays as V
 from standoff.kernels.entries import servo as entries
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Box:

@@ -7,7 +7,6 @@ import threading
 import time
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.kernels.dynamics import servo_arrays as V
@@ -16,8 +15,7 @@ from standoff.servo.exchange import Box
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading, Fault
 from standoff.simulation.wrench import Wrench
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 

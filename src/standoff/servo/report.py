@@ -13,9 +13,9 @@ from standoff.read_only import KeepsReadOnly
 from standoff.servo.statistics import NANO, ServoStatistics
 from standoff.simulation.device import Fault
 from standoff.simulation.system_state import SystemState
+from standoff.typing import Array
 from standoff.wording import counted
 
-Array = NDArray[np.float64]
 Log = NDArray[np.void]
 
 LOGGED = np.dtype(

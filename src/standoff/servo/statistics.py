@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.dynamics import servo_arrays as V
-
-Ints = NDArray[np.int64]
+from standoff.typing import Ints
 
 QUANTILES: Final = (0.5, 0.99, 0.999, 0.9999)
 NANO: Final = 1_000_000_000

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.arrays import finite
 from standoff.checks.names import choice
@@ -22,8 +21,7 @@ from standoff.simulation.adaptive_legs import SystemEvent as SystemEvent
 from standoff.simulation.generalised_system import GeneralisedSystem
 from standoff.simulation.loaded_bodies import Features, LoadedBodies
 from standoff.simulation.system import System
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

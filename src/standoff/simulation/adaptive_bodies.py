@@ -14,7 +14,6 @@ from typing import Any, Final
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
@@ -26,8 +25,7 @@ from standoff.simulation.rigid_body import DRIVEN, FREE
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.tolerances import CHART_SERIES
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 CHART: Final = 1.5
 """Radians: a body that has turned farther begins a new chart, as the chart ends at a full turn."""

@@ -8,14 +8,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.recording.changes import changes
 from standoff.simulation.loaded_bodies import Features
 from standoff.simulation.tolerances import EVENT_INSTANT
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 METHODS: Final = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 

@@ -6,13 +6,11 @@ from collections.abc import Iterable
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import is_whole
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.simulation.device import Fault, Seen, read_motion
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 MOST_READINGS: Final = 2**53
 """Greatest sequence number: beyond it a float does not tell two neighbours apart, and at 1 kHz a

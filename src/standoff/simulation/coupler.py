@@ -7,7 +7,6 @@ from dataclasses import dataclass, fields
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import not_negative, number, positive
 from standoff.checks.real_numbers import shown
@@ -28,8 +27,7 @@ from standoff.simulation.device import DeviceReading, Fault, read_motion
 from standoff.simulation.passivity import Sampling, check_passive
 from standoff.simulation.passivity_observer import PassivityController
 from standoff.simulation.wrench import Wrench
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 LET_GO_ANGLE: Final = K.LET_GO_ANGLE
 """Radian between handle and tool, at which the coupler lets go."""

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.simulation.coupler_state import CouplerCounts
 from standoff.simulation.passivity_observer import PortEnergy
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class CouplerRun(NamedTuple):

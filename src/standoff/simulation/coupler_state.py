@@ -6,14 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.simulation.device import Fault, Seen
 from standoff.simulation.passivity_observer import PortEnergy
 from standoff.simulation.wrench import Wrench
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 NO_WRENCH = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 

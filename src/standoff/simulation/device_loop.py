@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import DeviceError, StandoffError, StandoffTypeError
@@ -15,8 +14,7 @@ from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import Device
 from standoff.simulation.device_readings import DeviceReadings
 from standoff.simulation.wrench import Wrench
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 NOTHING_READ = np.zeros(K.N_READING)
 """What is read where there is no device."""

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive, whole_number
 from standoff.checks.real_numbers import shown
@@ -17,8 +16,7 @@ from standoff.motion.pose_function import path_of
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 MOST_MADE: Final = 1_000_000
 """Greatest number of readings made from one path: a quarter of an hour at 1 kHz, 180 MB."""

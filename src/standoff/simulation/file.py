@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any, BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from standoff import parquet
@@ -14,8 +13,6 @@ from standoff.parquet import vectors
 from standoff.simulation.coupler_run import CouplerRun
 from standoff.simulation.system_run import SystemRun
 from standoff.version import __version__
-
-Array = NDArray[np.float64]
 
 FORMAT = "standoff-simulation"
 FORMAT_VERSION = 1

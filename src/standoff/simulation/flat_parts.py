@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.topology import Face
@@ -14,8 +13,7 @@ from standoff.kernels.body import layout as L
 from standoff.kernels.dynamics import flat_parts as F
 from standoff.kernels.entries.queries import chart_normal
 from standoff.simulation.tolerances import RIM_GAP, SHARED_END
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 RIM_CORNERS = 12
 """Corners of the polygon that stands for a closed curved edge; an open one has half as many."""

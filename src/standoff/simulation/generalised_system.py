@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.checks.arrays import finite
@@ -18,8 +17,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.system import System
 from standoff.simulation.tolerances import SINGULAR_INERTIA, SYMMETRIC_INERTIA
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

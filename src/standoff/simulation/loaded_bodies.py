@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.features import feature_of
 from standoff.errors import StandoffError
@@ -17,8 +16,7 @@ from standoff.simulation.system_start import started
 from standoff.simulation.system_state import distances
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.rows import AnswerRows
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 Features = list[tuple[str, str]]
 

@@ -13,10 +13,11 @@ from standoff.bodies.moments.boundary import Moments, moments_of
 from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import Array, matrix3, vector3
+from standoff.geometry.validation import matrix3, vector3
 from standoff.read_only import KeepsReadOnly
 from standoff.simulation.tolerances import INERTIA_ROUNDOFF, LEAST_MOMENT, MOMENTS_END
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.typing import Array
 
 # A volume below so many times its own bound is none: no digit of the centre is left.
 LEAST_VOLUME = 4.0

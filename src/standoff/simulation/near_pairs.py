@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.world import arrays as W
 from standoff.simulation.rigid_body import FREE
@@ -13,9 +12,8 @@ from standoff.simulation.system import System
 from standoff.simulation.tolerances import BALL_SLACK
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff.world.packed import packed_pieces, pieces_of
-
-Array = NDArray[np.float64]
 
 LEAST_PAIRS = 100
 """Pairs of bounded bodies: of fewer, to look at all takes no longer than to search."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.names import choice
 from standoff.checks.numbers import number, positive, whole_number, yes_or_no
@@ -46,8 +45,7 @@ from standoff.simulation.system_run import SystemRun, account_width
 from standoff.simulation.system_start import started
 from standoff.simulation.system_state import SystemState, coupler_at, state_length
 from standoff.tracking.law_options import Law
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 SIDES = ("inside", "beside")
 

@@ -17,8 +17,8 @@ from standoff.simulation.solid_parts import pack_solids, pair_numbers, room_for_
 from standoff.simulation.system import System, farthest, unseen_depth
 from standoff.simulation.system_state import state_length
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 KINDS = {"free": K.FREE, "fixed": K.FIXED, "driven": K.DRIVEN}
 
 

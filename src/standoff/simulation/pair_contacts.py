@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
@@ -19,9 +18,7 @@ from standoff.simulation.solid_places import ContactPlace, place_of
 from standoff.simulation.system import System
 from standoff.simulation.system_state import SystemState, answers, kept_places
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
-Starts = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 ONLY = 0
 """Key of the one place of a pair of convex bodies."""
@@ -105,9 +102,9 @@ class ContactRows(KeepsReadOnly):
     """
 
     spots: Array
-    spot_starts: Starts
+    spot_starts: Ints
     places: Array
-    place_starts: Starts
+    place_starts: Ints
 
     @classmethod
     def of(cls, spots: Sequence[Array], places: Sequence[Array]) -> ContactRows:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
@@ -17,8 +16,8 @@ from standoff.tracking.laws import PaperLaw, PredictorCorrector, checked_law
 from standoff.tracking.options import carried, pack_options
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import address_of
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Laws = Law | Mapping[tuple[int, int], Law] | None
 """Of a system's pairs: one for all, or one for each of some pairs of body numbers."""
 

@@ -29,7 +29,6 @@ from typing import Any, Final
 import numpy as np
 import scipy
 
-from standoff.checks.arrays import FloatArray
 from standoff.checks.numbers import not_negative, number, positive, whole_number
 from standoff.checks.real_numbers import shown
 from standoff.errors import PassivityError, StandoffError, StandoffTypeError
@@ -40,6 +39,7 @@ from standoff.simulation.tolerances import (
     PEAK_FOUND,
     STIFFNESS_ROUNDING,
 )
+from standoff.typing import Array
 
 ANGLES: Final = 2048
 """Frequencies between 0 and Nyquist's at which a right side is looked at before its greatest value
@@ -111,9 +111,9 @@ def required_damping(stiffness: float, damping: float, sampling: Sampling) -> fl
     _check_sampling(sampling)
     b = number(damping, "damping")
 
-    def right_side(angles: FloatArray) -> FloatArray:
+    def right_side(angles: Array) -> Array:
         of_spring, of_damper = _shares(angles, sampling)
-        both: FloatArray = k * of_spring + b * of_damper
+        both: Array = k * of_spring + b * of_damper
         return both
 
     return _greatest(right_side)
@@ -143,7 +143,7 @@ def largest_stiffness(damping: float, device_damping: float, sampling: Sampling)
     own = not_negative(device_damping, "device_damping")
     _check_sampling(sampling)
 
-    def excess(angles: FloatArray) -> FloatArray:
+    def excess(angles: Array) -> Array:
         of_spring, of_damper = _shares(angles, sampling)
         bounded = of_spring > 0.0
         over = np.full(angles.shape, -math.inf)
@@ -193,7 +193,7 @@ def required_damping_of(
         )
     angles = whole_number(angles, "angles", 8, MOST_ANGLES)
 
-    def right_side(given: FloatArray) -> FloatArray:
+    def right_side(given: Array) -> Array:
         try:
             answered = np.asarray(position_to_force(np.exp(1j * given)), dtype=np.complex128)
         except (TypeError, ValueError) as error:
@@ -211,7 +211,7 @@ def required_damping_of(
             )
         # (1 − e^{−jθ})/(1 − cos θ) = 1 + j cot(θ/2): no digits are lost at small angles.
         turned = (1.0 + 1j / np.tan(0.5 * given)) * answered
-        found: FloatArray = 0.5 * seconds * np.real(turned)
+        found: Array = 0.5 * seconds * np.real(turned)
         return found
 
     return _greatest(right_side, first=FIRST_FREQUENCY * math.pi / angles, angles=int(angles))
@@ -254,7 +254,7 @@ def _check_sampling(sampling: Any) -> None:
         )
 
 
-def _shares(angles: FloatArray, sampling: Sampling) -> tuple[FloatArray, FloatArray]:
+def _shares(angles: Array, sampling: Sampling) -> tuple[Array, Array]:
     """The right side per unit of stiffness and per unit of damping, at angles from 0 to π."""
     n, T = sampling.delay, sampling.period
     half = np.sin(0.5 * angles)
@@ -266,7 +266,7 @@ def _shares(angles: FloatArray, sampling: Sampling) -> tuple[FloatArray, FloatAr
 
 
 def _greatest(
-    function: Callable[[FloatArray], FloatArray], first: float = 0.0, angles: int = ANGLES
+    function: Callable[[Array], Array], first: float = 0.0, angles: int = ANGLES
 ) -> float:
     """The greatest value over angles from `first` to π: on a grid, then refined around it."""
     grid = np.linspace(first, math.pi, angles + 1)

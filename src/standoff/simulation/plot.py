@@ -6,18 +6,17 @@ from collections.abc import Sequence
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import of_extra
 from standoff.simulation.rigid_body import FIXED
 from standoff.simulation.system_run import SystemRun
+from standoff.typing import Array
 
 with of_extra("matplotlib"):
     from matplotlib.axes import Axes
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 
 # Okabe and Ito's colours, told apart by eyes without red or green.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "black")

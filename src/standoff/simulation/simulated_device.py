@@ -11,7 +11,6 @@ from typing import Any, Final, Self
 
 import numpy as np
 
-from standoff.checks.arrays import FloatArray
 from standoff.checks.numbers import not_negative, positive, whole_number
 from standoff.checks.real_numbers import shown
 from standoff.errors import DeviceError, StandoffTypeError
@@ -34,6 +33,7 @@ from standoff.simulation.human_arm import HumanArm
 from standoff.simulation.passivity import LONGEST_DELAY, Sampling
 from standoff.simulation.six_axes import combined, difference, rotation_error, turned_on
 from standoff.simulation.wrench import Wrench
+from standoff.typing import Array
 
 SQUARED_UP: Final = 1024
 """Samples after which the handle's rotation is made orthonormal again: rounding has left 1e-13."""
@@ -312,6 +312,6 @@ class SimulatedDevice:
         return as_numbers(pose, self._path.twist(t))
 
 
-def _cut(vector: FloatArray, most: float) -> tuple[FloatArray, bool]:
+def _cut(vector: Array, most: float) -> tuple[Array, bool]:
     length = math.hypot(*vector.tolist())
     return (vector, False) if length <= most else (vector * (most / length), True)

@@ -21,7 +21,6 @@ from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING, PROOF_TOLERANCE
 from standoff.solids.tracked.tracker import untracked
 
-Array = NDArray[np.float64]
 NO_FLATS = FlatParts((), np.zeros((0, 3)), np.zeros((0, F.RIM_REALS)), F.CURVED)
 
 SOLID_SPRINGS = 8.0

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.errors import StandoffError
 from standoff.kernels.solids import contact_places as P
 from standoff.motion import Pose
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class ContactSpot(NamedTuple):

@@ -8,14 +8,12 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.dynamics.operator import METHODS
 from standoff.kernels.paper.integrators import NODES, STAGES, WEIGHTS
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.tolerances import LEAST_STABLE, STABLE_ROUNDING, STIFFNESS_FOUND
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 GROWTH: Final = 0.01
 """The part of its energy that a contact may gain over a half period by the method alone: Euler's,

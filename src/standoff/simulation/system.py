@@ -14,7 +14,7 @@ from standoff.bodies.body import Body
 from standoff.checks.numbers import is_whole
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
-from standoff.geometry.validation import Array, vector3
+from standoff.geometry.validation import vector3
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose, Twist
 from standoff.read_only import KeepsReadOnly
@@ -32,6 +32,7 @@ from standoff.simulation.solid_parts import (
 from standoff.simulation.tolerances import UNSEEN_PART
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.inputs import check_pair
+from standoff.typing import Array
 
 EARTH = (0.0, 0.0, -9.81)
 """Gravity if none is given, length/s² in metres."""

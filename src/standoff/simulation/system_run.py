@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.checks.numbers import whole_number
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
@@ -18,8 +15,7 @@ from standoff.simulation.pair_contacts import ContactRows, PairContact, pair_con
 from standoff.simulation.system import System
 from standoff.simulation.system_state import Crossing, Energy, SystemState
 from standoff.tracking.rows import AnswerRows
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

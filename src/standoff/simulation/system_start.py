@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
@@ -19,8 +18,7 @@ from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.law_options import Law
 from standoff.tracking.tracker import Tracker
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def started(

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
@@ -18,8 +17,7 @@ from standoff.simulation.coupler_state import CouplerState, packed_state, unpack
 from standoff.simulation.rigid_body import FREE
 from standoff.simulation.solid_places import SolidContact, place_rows, solid_contact
 from standoff.simulation.system import System
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Energy(NamedTuple):

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from standoff.checks.arrays import FloatArray, finite
+from standoff.checks.arrays import finite
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -32,8 +33,8 @@ class Wrench(KeepsReadOnly):
         Read-only, float64.
     """
 
-    force: FloatArray
-    torque: FloatArray
+    force: Array
+    torque: Array
 
     def __init__(self, force: ArrayLike, torque: ArrayLike = (0.0, 0.0, 0.0)) -> None:
         object.__setattr__(self, "force", finite(force, "force", (3,)))

@@ -7,7 +7,6 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.linalg import norm
-from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import PlainData, plain, without_roundoff
@@ -15,9 +14,7 @@ from standoff.errors import StandoffError
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.derivatives import NOT_UNIQUE, Smoothness
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
-
+from standoff.typing import Array
 
 PointPair = tuple[Array, Array]
 """A point of A and one of B, world axes."""

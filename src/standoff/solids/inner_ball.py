@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.solids.answer import Overlap
+from standoff.typing import Array
 
 INWARD_STEPS = 20
 """Steps inward that are tried: the size, and its halves."""

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.solids.answer import (
     MOST_OPEN,
@@ -21,8 +20,6 @@ from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
 
 
 class OfPieces(NamedTuple):

@@ -6,11 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.solids.tolerances import MOVED_MORE, NO_WAY_OUT, PARTED_BY, WAY_GAIN
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 Gap = tuple[float, Array]
 """How far two solids are proven to be apart, and the normal there."""
 MOST_DRAWN = 8

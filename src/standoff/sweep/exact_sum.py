@@ -6,11 +6,9 @@ import math
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.sweep.tolerances import PLAIN_SUMS
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 MOST_PIECES: Final = 8
 """Times that digits are cut off before `math.fsum` gets the rest: of distances two do."""

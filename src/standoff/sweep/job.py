@@ -8,9 +8,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.bodies.body import Body
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -27,8 +24,7 @@ from standoff.sweep.subjects.subject import Alone, Subject
 from standoff.sweep.summary import Summary
 from standoff.sweep.work import Token, Work
 from standoff.tracking.distance_arrays import Distances
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 BLOCK = 8192
 """Rows computed at once: their poses and answers, some 5 MB, stay near the processor, and what a

@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.motion import Pose
 from standoff.scene.shapes import NO_LENGTHS
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 SHIFTS = ("x", "y", "z")
 TURNS = ("turn_x", "turn_y", "turn_z")

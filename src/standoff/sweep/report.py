@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.sweep.code import code_facts
 from standoff.sweep.digests import digest_of
 from standoff.sweep.job import Job
 from standoff.sweep.rows import Rows
 from standoff.sweep.summary import Listed, Summary
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Report(NamedTuple):

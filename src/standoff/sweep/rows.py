@@ -7,13 +7,10 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.tracking.status import BY_NUMBER, Status
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 NO_PAIR = -1
 """In place of a pair's number: there is one pair only, or none was within the horizon."""
@@ -33,11 +30,11 @@ class Rows(NamedTuple):
         The subject's number of the nearest pair, or `NO_PAIR`.
     """
 
-    row: Whole
+    row: Ints
     distance: Array
     lower_bound: Array
-    status: Whole
-    pair: Whole
+    status: Ints
+    pair: Ints
 
     @classmethod
     def none(cls) -> Rows:

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
 from standoff.errors import StandoffError, of_extra
+from standoff.typing import Array
 from standoff.wording import printable
-
-Array = NDArray[np.float64]
 
 ENDINGS = (".parquet", ".csv", ".npy")
 

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.sweep.permutation import ROUNDS, permuted
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 WORDS = 4
 """Numbers that Philox makes of one state of its counter."""

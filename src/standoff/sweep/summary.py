@@ -8,16 +8,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.sweep.exact_sum import exact_sum
 from standoff.sweep.keep import Keep
 from standoff.sweep.rows import Rows
 from standoff.tracking.answers import PROVEN
 from standoff.tracking.status import BY_NUMBER, Status
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 MOST_UNCERTIFIED = 1000
 """Rows without a proof that are listed; all are counted."""
@@ -40,7 +37,7 @@ class Spread:
     most: float = -math.inf
     most_row: int = -1
 
-    def add_rows(self, row: Whole, values: Array) -> None:
+    def add_rows(self, row: Ints, values: Array) -> None:
         known = np.isfinite(values)
         if not known.all():
             row, values = row[known], values[known]

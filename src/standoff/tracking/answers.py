@@ -18,12 +18,11 @@ from standoff.shown_names import hides
 from standoff.tracking.proximity import Event, Proximity
 from standoff.tracking.rows import AnswerRows
 from standoff.tracking.status import BY_NUMBER, Status
+from standoff.typing import Array
 from standoff.wording import counted, short_name
 
 if TYPE_CHECKING:
     from standoff.tracking.contact.patches import Patch, Patches
-
-Array = NDArray[np.float64]
 
 
 def _field(name: str, doc: str) -> Any:

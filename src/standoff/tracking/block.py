@@ -6,13 +6,11 @@ The kernels write it; ``standoff.kernels.state.arrays`` says where each part sta
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.pair import events as N
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def with_polytope(data: Array, polytope: Array) -> Array:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
@@ -14,8 +13,7 @@ from standoff.tracking.block import Block
 from standoff.tracking.inputs import ABSENT
 from standoff.tracking.reached import AddressTable
 from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row, poses_of, twists_of
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Frame(NamedTuple):

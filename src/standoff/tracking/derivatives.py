@@ -20,8 +20,7 @@ from standoff.tracking.reached import packed
 from standoff.tracking.rows import Answer
 from standoff.tracking.status import Ordered
 from standoff.tracking.threads import in_parts
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Smoothness(Ordered):

@@ -19,13 +19,12 @@ from standoff.tracking.proximity import Proximity
 from standoff.tracking.refused_rows import RefusedRows
 from standoff.tracking.row_pairs import RowPairs
 from standoff.tracking.rows import motion_row
+from standoff.typing import Array, Ints
 from standoff.wording import counted
 
 if TYPE_CHECKING:
     from standoff.tracking.derivatives import DerivativeArrays
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FEATURE = np.dtype([("kind", "U6"), ("index", np.int64)])
 """A feature in an array: "face", "edge" or "vertex", and its number among those."""

@@ -16,7 +16,7 @@ from numbers import Complex, Real
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.checks.names import choice
 from standoff.checks.numbers import positive
@@ -26,8 +26,7 @@ from standoff.kernels.paper import integrators as I
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.tolerances import NEAR_LIMIT
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 DEFAULT_LEAST = 0.1
 """`MotionGain`'s least gain, times 1/dt: errors of bodies at rest decay within some 50 steps."""

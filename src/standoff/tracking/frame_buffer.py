@@ -6,7 +6,6 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.compiler.entry import WrongKind
@@ -21,8 +20,7 @@ from standoff.tracking.reached import Reached
 from standoff.tracking.rows import AnswerRows, motion_row, poses_of, twists_of
 from standoff.tracking.state import TrackerState
 from standoff.tracking.status import BY_NUMBER, Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class FrameBuffer:

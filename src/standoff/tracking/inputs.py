@@ -18,8 +18,8 @@ from standoff.motion import Pose, PoseLike, Twist, TwistLike
 from standoff.motion.rotations import defect, mirrored, without_rounding
 from standoff.motion.tolerances import ROUNDED
 from standoff.tracking.rows import NO_TWIST, motion_row, poses_of, twists_of
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 LAST_ROW = [0.0, 0.0, 0.0, 1.0]
 PLAIN = (np.float64, np.float32)
 # Where R (row-major) and p stand in a 4x4 matrix.

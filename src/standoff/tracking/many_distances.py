@@ -22,9 +22,8 @@ from standoff.tracking.refused_rows import RefusedPoses, RefusedRows
 from standoff.tracking.row_pairs import RowPairs, is_planar, row_pairs
 from standoff.tracking.threads import in_parts
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 from standoff.wording import counted
-
-Array = NDArray[np.float64]
 
 ColdRows = Callable[[AddressTables, tuple[Array, Array], Array, int], None]
 """Answers cold rows as `cold_rows` does."""

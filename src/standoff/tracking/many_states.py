@@ -24,8 +24,7 @@ from standoff.tracking.proximity import Proximity
 from standoff.tracking.runs import Frames, frame_told, take_polytope
 from standoff.tracking.state import TrackerState
 from standoff.tracking.threads import in_parts
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class TrackerStates(KeepsReadOnly):

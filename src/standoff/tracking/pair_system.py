@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.entries import queries
@@ -19,8 +18,8 @@ from standoff.tracking.inputs import (
 )
 from standoff.tracking.places import PlaceLike, put
 from standoff.tracking.rows import StateRow, motion_row
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 UPPER = np.triu_indices(4)
 SIGNS = np.array([1.0, 1.0, -1.0, -1.0])
 STILL = np.zeros(6)

@@ -6,7 +6,6 @@ import operator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature, charts_of
@@ -14,8 +13,7 @@ from standoff.checks.real_numbers import check_readable, real_array, shown
 from standoff.errors import StandoffError, UnreadableNumbers
 from standoff.kernels.entries.queries import on_face
 from standoff.tracking.rows import StateRow
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 PlaceLike = tuple[Feature | tuple[str, int], Any]
 """A feature and its parameters."""

@@ -22,8 +22,8 @@ from standoff.tracking.inputs import (
     out_of_plane,
 )
 from standoff.tracking.tolerances import CHECK_ROUNDOFF
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 FORMS = (
     "an array of shape (n, 4, 4) or (n, 12), a pair (R, p) of shapes (n, 3, 3) and (n, 3), "
     "so.Poses, a list of poses, or one pose"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature as Feature
@@ -16,13 +15,12 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.rows import Answer
 from standoff.tracking.rows import Counts as Counts
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.tracking.contact.patches import Patch
     from standoff.tracking.contact.witness_set import WitnessSet
     from standoff.tracking.derivatives import Derivatives
-
-Array = NDArray[np.float64]
 
 
 class Event(NamedTuple):

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.bodies.packing import Ints
 from standoff.kernels.entries import laws
 from standoff.tracking.inputs import check_pair
 from standoff.tracking.law_options import Law
@@ -18,8 +17,8 @@ from standoff.tracking.laws import DEFAULT_LAW, PaperLaw, PredictorCorrector
 from standoff.tracking.options import resolved_options, with_frames
 from standoff.tracking.row_pairs import RowPairs
 from standoff.tracking.specialised import address_of, smooth_frame_of
+from standoff.typing import Array, Ints
 
-Array = NDArray[np.float64]
 Pair = tuple[Ints, NDArray[np.float64], Ints, NDArray[np.float64]]
 
 ANY_TIME = 1.0

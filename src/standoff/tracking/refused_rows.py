@@ -16,8 +16,8 @@ from standoff.motion import Pose
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.inputs import check_in_plane, flat_pose, repair
 from standoff.tracking.pose_arrays import another_order
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 HOME = flat_pose(np.eye(4))
 SHOWN = 3
 """Number of errors shown in the repr."""

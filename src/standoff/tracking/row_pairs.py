@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
 from standoff.tracking.inputs import check_body, check_pair
+from standoff.typing import Ints
 from standoff.wording import counted, short_name
-
-Ints = NDArray[np.int64]
 
 
 class RowPairs(NamedTuple):

@@ -19,8 +19,8 @@ from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.block import Block
 from standoff.tracking.status import Status
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 NO_TWIST = np.zeros(6)
 NO_TWIST.flags.writeable = False
 

@@ -21,8 +21,7 @@ from standoff.tracking.pose_arrays import another_order, mended, numbers, read_p
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import AddressTable
 from standoff.tracking.state import TrackerState
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Frames(NamedTuple):

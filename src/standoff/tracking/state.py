@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.block import Block
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import StateRow
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class TrackerState(KeepsReadOnly):

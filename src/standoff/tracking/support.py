@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
@@ -15,8 +14,8 @@ from standoff.tracking.laws import DEFAULT_LAW
 from standoff.tracking.options import pack_options
 from standoff.tracking.reached import table_of
 from standoff.tracking.rows import StateRow
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 # Turns a segment of the z axis into one of the y axis.
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from standoff.bodies.body import Body
 from standoff.checks.numbers import positive
@@ -28,6 +28,7 @@ from standoff.tracking.rows import StateRow
 from standoff.tracking.specialised import checked_choice
 from standoff.tracking.state import TrackerState
 from standoff.tracking.steps_of_many import StepsMany
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.motion import PoseLike, PosesLike, TwistLike
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
     from standoff.tracking.frame_buffer import FrameBuffer
     from standoff.tracking.places import PlaceLike
 
-Array = NDArray[np.float64]
 ARRAY, empty = np.ndarray, np.empty  # of every step: a name less to look up
 N_BLOCK, N_KEEPING_BLOCK = K.N_BLOCK, K.N_KEEPING_BLOCK
 

@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff.view.nodes import BodyNodes, Colour, quaternion
 from standoff.view.picture import Aimable, aim_all
 from standoff.view.shapes import Shape, shape_of
 from standoff.world.packed import pieces_of
 from standoff.world.shapes import is_bounded
-
-Array = NDArray[np.float64]
 
 FIXED_COLOURS: tuple[Colour, Colour] = ((205, 205, 205), (120, 120, 120))
 """Of bodies that never move."""

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.simulation.pair_contacts import PairContact, SpotForce
 from standoff.simulation.solid_places import ContactPlace
+from standoff.typing import Array
 from standoff.view.nodes import ARROW, BOUND_COLOUR, Colour
 from standoff.view.segments import Clouds, Segments, arrow_of
 from standoff.view.solid_nodes import LABELLED, LINE, OVERLAP_COLOUR, POINT, SHAFT, ends_of
-
-Array = NDArray[np.float64]
 
 FORCE_LINE = 4.0
 """Thickness of the arrows of forces [pixels]."""

@@ -7,19 +7,17 @@ from html import escape
 from itertools import chain, islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.simulation.pair_contacts import PairContact
 from standoff.simulation.system_state import Energy
 from standoff.simulation.units import Units
 from standoff.tracking import Status
+from standoff.typing import Array
 from standoff.view.contact_nodes import FORCE_COLOUR, Arrows
 from standoff.view.readout import COLOURS, MARK, ROW, SHORT, TABLE, length
 from standoff.view.shown_simulation import Instant, Simulated
 from standoff.view.solid_readout import ANOTHER, IN_OVERLAP, MOST_LISTED, NONE
 from standoff.wording import counted, printable, short_name
-
-Array = NDArray[np.float64]
 
 LIST = (
     '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0;'

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.motion import Pose
@@ -16,10 +15,10 @@ from standoff.solids.spatial.models import as_model
 from standoff.solids.tracked.answers import SolidAnswers
 from standoff.solids.tracked.tracker import SolidTracker, untracked
 from standoff.tracking import Status
+from standoff.typing import Array
 from standoff.view.minima_asked import MinimaAsked
 from standoff.view.tolerances import FRAME_EVALUATIONS, NEAR_MINIMA
 
-Array = NDArray[np.float64]
 Poses = tuple[Pose, Pose]
 
 

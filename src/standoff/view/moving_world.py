@@ -7,19 +7,17 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive
 from standoff.errors import StandoffError
 from standoff.motion import Fixed, Pose
 from standoff.motion.moving import moving
 from standoff.scene import Scene
+from standoff.typing import Array
 from standoff.view.tolerances import MOST_COURSE
 from standoff.wording import counted
 from standoff.world import World, WorldAnswer
 from standoff.world.poses import check_names
-
-Array = NDArray[np.float64]
 
 
 class MovingWorld(NamedTuple):

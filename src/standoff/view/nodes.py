@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import scipy
 import trimesh
-from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff.view.shapes import Mesh, Shape
 
-Array = NDArray[np.float64]
 Colour = tuple[int, int, int]
 
 # Light and strong, after Okabe and Ito's blue and vermilion; stronger than in the pictures of

@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff.view.nodes import COLOURS, AnswerNodes, BodyNodes, quaternion
 from standoff.view.readout import beside
 from standoff.view.shapes import Shape, shape_of
 from standoff.view.shown import Shown
 from standoff.view.tolerances import SEEN_INTO
-
-Array = NDArray[np.float64]
 
 GRIP = 0.5
 """Size of the handle that drags a body, over the body's own."""

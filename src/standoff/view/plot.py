@@ -6,13 +6,11 @@ from collections import deque
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.typing import Array
 from standoff.view.player import Player
 from standoff.view.plot_scale import PlotScale, scale_of
 from standoff.view.readout import COLOURS
-
-Array = NDArray[np.float64]
 
 SPAN = 10.0
 """Time that the plot shows [s]."""

@@ -6,12 +6,8 @@ from decimal import Decimal
 from math import ceil, floor, log10
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from standoff.typing import Array
 from standoff.view.tolerances import LEVEL_PLOT
-
-Array = NDArray[np.float64]
 
 STEPS = 4
 """Steps of a scale at most, before it is widened to whole ones: more crowd a low plot."""

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff import simulation as sim
 from standoff.errors import StandoffError
 from standoff.motion import ConstantTwist, Pose, Twist
+from standoff.typing import Array
 from standoff.view.live_pair import LivePair
 from standoff.view.tolerances import TICK
-
-Array = NDArray[np.float64]
 
 MOST_TICKS = 100
 """Ticks between two looks at most: after a pause the tool does not leap."""

@@ -7,18 +7,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import FaceMesh, edge_lines, face_meshes
 from standoff.solids.planar.loops import points_along
 from standoff.solids.planar.solid import PlanarSolid
+from standoff.typing import Array, Ints
 from standoff.view.tolerances import LIFT
 from standoff.world.shapes import boundary_of
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 DIRECTIONS = 1500
 """Directions in which the skin of a swept body is drawn."""
@@ -28,7 +25,7 @@ class Mesh(NamedTuple):
     """Triangles: points (n, 3) and the numbers of their corners (m, 3)."""
 
     points: Array
-    triangles: Numbers
+    triangles: Ints
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.errors import StandoffError
@@ -14,8 +11,7 @@ from standoff.motion import Pose
 from standoff.recording import Recording
 from standoff.recording.recorded import Paths
 from standoff.tracking import Proximity, Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Shown(NamedTuple):

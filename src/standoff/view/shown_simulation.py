@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.dynamics import arrays as K
@@ -17,9 +16,8 @@ from standoff.simulation.rigid_body import FREE
 from standoff.simulation.system import System
 from standoff.simulation.system_run import SystemRun
 from standoff.simulation.system_state import Energy, SystemState
+from standoff.typing import Array
 from standoff.wording import counted
-
-Array = NDArray[np.float64]
 
 
 class Simulated(NamedTuple):

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.simulation.solid_places import ContactPlace
 from standoff.solids.answer import NearestPair, SolidProximity
+from standoff.typing import Array
 from standoff.view.nodes import ARROW, BOUND_COLOUR, WITNESS_COLOUR, WITNESS_RADIUS, Colour
 from standoff.view.segments import Clouds, Segments, arrow_of
-
-Array = NDArray[np.float64]
 
 OVERLAP_COLOUR: Colour = (190, 0, 110)
 """Of places in overlap: like neither body, nor the normals, nor what is apart."""

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.motion import Pose
 from standoff.solids.answer import NearestPair
+from standoff.typing import Array
 from standoff.view.bodies_picture import FIXED_COLOURS, BodiesPicture
 from standoff.view.gap_colours import gap_colours
 from standoff.view.nodes import COLOURS, AnswerNodes, quaternion
@@ -24,8 +24,6 @@ from standoff.world import World, WorldAnswer
 from standoff.world.packed import pieces_of
 from standoff.world.pair_answer import PairAnswer
 from standoff.world.shapes import is_solid
-
-Array = NDArray[np.float64]
 
 MOST_LINES = 200
 """Near pairs that are drawn: of more, the nearest."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.tracking import Status
 from standoff.view.clearance_matrix import matrix_picture
@@ -19,8 +18,6 @@ from standoff.view.world_panel import WorldPanel
 from standoff.view.world_picture import WorldPicture
 from standoff.view.world_readout import world_readout
 from standoff.world import World
-
-Array = NDArray[np.float64]
 
 MATRIX_PERIOD = 0.4
 """Least time between two matrices [s]: more often they are not read, and they cost the most."""

@@ -11,17 +11,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.entries import world as kernels
 from standoff.kernels.world import arrays as W
 from standoff.kernels.world.tree import MOST_REFITS, N_BOX, SOUGHT_PART
+from standoff.typing import Array, Ints
 from standoff.world.packed import PackedPieces
 from standoff.world.rules import Rules
 from standoff.world.state import Tree
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 FIRST_ROOM = 1024
 """Pairs that a search has room for at first."""

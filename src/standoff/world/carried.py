@@ -6,21 +6,18 @@ from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.world import arrays as W
+from standoff.typing import Array, Ints
 from standoff.world.broad_phase import Table, empty_placed
 from standoff.world.given import mapping_of, names_of
 from standoff.world.model import Model
 from standoff.world.poses import GivenPoses, read_poses_of
 from standoff.world.rules import Given
 from standoff.world.state import KeptSolids, WorldState
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 def changed_arguments(

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.world import arrays as W
 from standoff.progress import Progress
 from standoff.tracking.answers import proven
+from standoff.typing import Array
 from standoff.world.broad_phase import (
     Placed,
     Table,
@@ -25,7 +25,6 @@ from standoff.world.narrow_phase import Asked, Refused, ask
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
 from standoff.world.state import NO_SOLIDS, KeptSolids, Tree, WorldCounts, WorldState
 
-Array = NDArray[np.float64]
 Twists = tuple[Array, bool]
 
 NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -14,11 +13,11 @@ from standoff.motion import Pose, PoseLike
 from standoff.tracking.inputs import matrix_and_mark
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import checked_law
+from standoff.typing import Array
 from standoff.world.pieces import Piece, PieceUnion, name_of
 from standoff.world.poses import GivenPoses, mend_poses
 from standoff.world.shapes import Shape, as_shape
 
-Array = NDArray[np.float64]
 BodyLike: TypeAlias = "Shape | PieceUnion"
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.tracking.answers import proven
+from standoff.typing import Array, Ints
 from standoff.world.broad_phase import Placed, Table, empty_placed, place
 from standoff.world.frame import no_tree
 from standoff.world.model import Model
@@ -22,9 +23,6 @@ from standoff.world.narrow_phase import answered
 from standoff.world.packed import PackedLaws, PackedPieces
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses
 from standoff.world.state import IN_PAGE, PAGE
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class PieceAnswers(NamedTuple):

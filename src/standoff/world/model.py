@@ -5,17 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from standoff.typing import Array, Ints
 from standoff.world.broad_phase import Search
 from standoff.world.packed import PackedLaws
 from standoff.world.pieces import PieceUnion
 from standoff.world.rules import Names
 from standoff.world.shapes import Shape
 from standoff.world.solid_pairs import SolidPairs
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Model(NamedTuple):

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.progress import Progress
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Moment(NamedTuple):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.entries import world as kernels
 from standoff.kernels.entries import world_answers
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.tracking.threads import in_parts
+from standoff.typing import Array, Ints
 from standoff.world.broad_phase import Placed, Table
 from standoff.world.moment import Moment
 from standoff.world.packed import PackedLaws, PackedPieces
@@ -20,8 +20,6 @@ from standoff.world.state import IN_PAGE, NO_SOLIDS, PAGE, KeptSolids
 if TYPE_CHECKING:
     from standoff.world.solid_rows import SolidRows
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 NUMBER = np.dtype(np.float64).itemsize
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.planes import outer_plane
@@ -18,11 +17,9 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import kinds_of, main_kind
+from standoff.typing import Array, Ints
 from standoff.world.pieces import Piece, PieceUnion
 from standoff.world.shapes import Shape, box_of, dimension_of_shape, is_bounded
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class PackedPieces(NamedTuple):

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
@@ -14,11 +13,10 @@ from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.status import Status
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.tracking.derivatives import Derivatives
-
-Array = NDArray[np.float64]
 
 
 class PairAnswer(Proximity):

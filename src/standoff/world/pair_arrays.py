@@ -14,6 +14,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.tracking.answers import proven, statuses
 from standoff.tracking.derivatives import NOT_UNIQUE, Smoothness, flagged_gradient
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.wording import counted
 from standoff.world.pair_answer import PairAnswer
 from standoff.world.pair_rows import PairRows
@@ -21,7 +22,6 @@ from standoff.world.pair_rows import PairRows
 if TYPE_CHECKING:
     from standoff.world.solid_answer import SolidPairAnswer
 
-Array = NDArray[np.float64]
 
 GATHERED = np.array(
     [

@@ -6,12 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.motion.vectors import pose_row
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array, Ints
 from standoff.world.model import Model
 from standoff.world.packed import pieces_of
 from standoff.world.pair_answer import PairAnswer, far_block, gradient_of_bodies, swapped
@@ -21,9 +21,6 @@ from standoff.world.state import WorldState
 if TYPE_CHECKING:
     from standoff.solids.answer import SolidProximity
     from standoff.world.solid_answer import SolidPairAnswer
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class PairRows(KeepsReadOnly):

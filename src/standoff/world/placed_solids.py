@@ -7,17 +7,14 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.world import arrays as W
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
 from standoff.solids.query import distance
 from standoff.tracking.threads import in_parts
+from standoff.typing import Array, Ints
 from standoff.world.model import Model
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class PlacedSolid(NamedTuple):

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence, Sized
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.names import did_you_mean
 from standoff.checks.real_numbers import real_array, shown
@@ -16,10 +15,8 @@ from standoff.motion import Pose, Twist
 from standoff.motion.rotations import defect, without_rounding
 from standoff.tracking.inputs import flat_twist, matrix_and_mark, out_of_plane
 from standoff.tracking.pose_arrays import flat_poses, mended, numbers, read_poses
+from standoff.typing import Array, Ints
 from standoff.world.tolerances import COMPOSED_ROUNDOFF
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class GivenPoses(NamedTuple):

@@ -13,11 +13,10 @@ from standoff.checks.names import did_you_mean
 from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
+from standoff.typing import Array, Ints
 from standoff.world.pieces import Piece, name_of
 from standoff.world.shapes import is_bounded
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Pairs = Iterable[tuple[str, str]]
 Sides = tuple[Ints, Ints]
 """The bodies on each side of a rule."""

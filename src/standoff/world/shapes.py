@@ -8,14 +8,12 @@ from __future__ import annotations
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
 from standoff.kernels.body import layout as L
 from standoff.tracking.cold_query import Queried
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 Shape: TypeAlias = Any
 """A `Body`, `Solid` or `PlanarSolid`: what a world asks of one depends on which it is."""

@@ -6,15 +6,13 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.features import NO_FEATURE
 from standoff.solids.answer import SolidCounts, SolidProximity
 from standoff.solids.of_pieces import turned as turned_answer
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False, repr=False)

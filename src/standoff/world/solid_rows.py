@@ -13,7 +13,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
@@ -30,6 +29,7 @@ from standoff.solids.tracked.state import SolidState
 from standoff.solids.tracked.tracker import SolidTracker, is_tracked
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
+from standoff.typing import Array, Ints
 from standoff.world.broad_phase import Placed, Table
 from standoff.world.model import Model
 from standoff.world.moment import Moment
@@ -39,9 +39,6 @@ from standoff.world.placed_solids import PlacedSolid, placed_solid
 from standoff.world.shapes import slack_of
 from standoff.world.state import PAGE, KeptSolids
 from standoff.world.tolerances import ALIKE_PLACED
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class SolidRows:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -17,9 +16,7 @@ from standoff.read_only import KeepsReadOnly
 if TYPE_CHECKING:
     from standoff.solids.answer import SolidProximity
 from standoff.solids.tracked.front import Front
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 PAGE = 32
 """Bits of a row's number within its page; the page's number stands above them."""

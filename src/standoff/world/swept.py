@@ -7,16 +7,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.impact.moment import EPS, Box, Placed
 from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.motion.bounds import bounds_of, breaks_of
 from standoff.motion.vectors import length
+from standoff.typing import Array, Ints
 from standoff.world.broad_phase import Search, pairs_of_boxes
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MOST_SPANS = 32
 """Spans of time into which a search is divided at most: a piece has a box in each."""

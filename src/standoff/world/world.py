@@ -7,9 +7,6 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.checks.numbers import not_negative, positive, whole_number
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
@@ -20,6 +17,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import DEFAULT_LAW
+from standoff.typing import Array
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
 from standoff.world.carried import carried_poses, changed_arguments
@@ -37,7 +35,6 @@ from standoff.world.poses import GivenPoses, check_frames, frames_of, read_poses
 from standoff.world.rules import Given
 from standoff.world.state import WorldState, check_key
 
-Array = NDArray[np.float64]
 PosesLike = Any
 """World poses of the moving bodies: (n, 4, 4) in the world's order, a list of poses, or a mapping
 of names to poses."""

@@ -15,7 +15,7 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import EdgeLine, FaceMesh
 from standoff.bodies.tolerances import FLAT_CLOUD
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 with of_extra("matplotlib", "plot"):
     from matplotlib.colors import to_rgb

@@ -11,7 +11,7 @@ from standoff.bodies.drawing.solids import Look, Solid, draw_solid
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import without_roundoff
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff.wording import short_name
 
 with of_extra("matplotlib", "plot"):

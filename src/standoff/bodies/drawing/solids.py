@@ -15,7 +15,7 @@ from standoff.bodies.drawing.body_view import LIGHT, Space, across, seen_points
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import EdgeLine, edge_lines, face_meshes
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 with of_extra("matplotlib", "plot"):
     from matplotlib.colors import to_rgb

@@ -34,7 +34,7 @@ from standoff.bodies.tolerances import (
     coordinate_roundoff,
 )
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # A polyhedron has as many faces at least.
 LEAST_FACES = 4

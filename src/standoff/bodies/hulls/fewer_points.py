@@ -7,7 +7,7 @@ import scipy
 
 from standoff.bodies.hulls.heights import highest
 from standoff.bodies.hulls.qhull import unit_of
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # How many directions there are whose extreme points come first.
 FIRST = 32

@@ -18,7 +18,7 @@ from standoff.checks.numbers import magnitude, magnitude_or_zero
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import BodyError
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def hull_of(points: Any, tolerance: float | None, rounding: float) -> tuple[float, Packed]:

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff.bodies.packing import Ints
-from standoff.geometry.validation import Array
+from standoff.typing import Array, Ints
 
 # Points of one block.
 BLOCK = 128

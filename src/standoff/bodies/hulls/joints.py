@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.bodies.hulls.polyhedron import Polyhedron
-from standoff.bodies.packing import Ints
 from standoff.bodies.tolerances import LEAST_AXIS, WIDE_ANGLE
-from standoff.geometry.validation import Array
+from standoff.typing import Array, Ints
 
 # Corrections of an axis amid a vertex's normals.
 AXIS_STEPS = 32

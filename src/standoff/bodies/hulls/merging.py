@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import scipy
 
-from standoff.bodies.hulls.qhull import Ints, Triangles
+from standoff.bodies.hulls.qhull import Triangles
 from standoff.bodies.tolerances import COPLANAR_FACETS, MERGED_TURN
-from standoff.geometry.validation import Array
+from standoff.typing import Array, Ints
 
 
 def merged(points: Array, triangles: Triangles, tolerance: float) -> Ints:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.hulls.merging import areas, by_first
-from standoff.bodies.hulls.qhull import Ints, Triangles
-from standoff.geometry.validation import Array
+from standoff.bodies.hulls.qhull import Triangles
+from standoff.typing import Array, Ints
 
 
 class Outlines(NamedTuple):

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.hulls.joints import Cones, WideCorners
 from standoff.bodies.hulls.polyhedron import Polyhedron
-from standoff.bodies.packing import Counts, Ints, Sample, Writer, put_header, put_samples
-from standoff.geometry.validation import Array
+from standoff.bodies.packing import Counts, Sample, Writer, put_header, put_samples
 from standoff.kernels.body import layout as L
-
-Mask = NDArray[np.bool_]
+from standoff.typing import Array, Bools, Ints
 
 # A line's pcurve: its range, then the 3 x 3 matrix; an edge's line: its range, 3 x 3 map and shift.
 COEDGE_REALS = L.PCURVE_DATA + 9
@@ -23,7 +20,7 @@ SECTOR_REALS = 5
 
 def pack_polyhedron(
     solid: Polyhedron,
-    joints: tuple[Mask, Cones, WideCorners],
+    joints: tuple[Bools, Cones, WideCorners],
     pcurves: Array,
     box: tuple[Array, Array],
     inner: Array,
@@ -74,7 +71,7 @@ def _put_faces(w: Writer, solid: Polyhedron, pcurves: Array, inner: Array) -> No
     w.table(L.COEDGES, np.column_stack([solid.edges, line, coedges, solid.senses, solid.owners]))
 
 
-def _put_edges(w: Writer, solid: Polyhedron, smooth: Mask) -> None:
+def _put_edges(w: Writer, solid: Polyhedron, smooth: Bools) -> None:
     first, last = (solid.vertices[solid.ends[:, k]] for k in range(2))
     n = len(first)
     block = np.zeros((n, LINE_REALS))

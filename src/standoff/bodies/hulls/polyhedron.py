@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from standoff.bodies.hulls.outlines import Outlines
-from standoff.bodies.packing import Ints
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array, Ints
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.checks.numbers import LEAST
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
-
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class Triangles(NamedTuple):

@@ -7,8 +7,8 @@ import numpy as np
 
 from standoff.bodies.hulls.polyhedron import Polyhedron
 from standoff.bodies.tolerances import INNER_SHARE
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 
 def inner_rectangles(solid: Polyhedron, pcurves: Array) -> Array:

@@ -17,7 +17,7 @@ from standoff.bodies.sampling import (
     stride,
 )
 from standoff.bodies.tolerances import ON_SIDE
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def polyhedron_samples(solid: Polyhedron, pcurves: Array) -> list[Sample]:

@@ -14,9 +14,8 @@ import numpy as np
 import scipy
 
 from standoff.bodies.meshes.mesh import Mesh
-from standoff.bodies.packing import Ints
 from standoff.bodies.tolerances import JOIN_TOLERANCE
-from standoff.geometry.validation import Array
+from standoff.typing import Array, Ints
 
 # Columns along the longer side of the box, and points of a surface, about.
 COLUMNS = 128

@@ -16,7 +16,7 @@ from standoff.bodies.meshes.columns import Fit, measured
 from standoff.bodies.meshes.mesh import Mesh, read_mesh
 from standoff.checks.numbers import positive, whole_number
 from standoff.errors import BodyError, StandoffError, of_extra
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,12 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy
 
-from standoff.bodies.packing import Ints
 from standoff.bodies.tolerances import MESH_CORNER
 from standoff.checks.arrays import finite_rows, numbers
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError, StandoffError, StandoffTypeError, not_installed, of_extra
-from standoff.geometry.validation import Array
+from standoff.typing import Array, Ints
 
 # Open edges that one message names.
 MOST_NAMED = 3

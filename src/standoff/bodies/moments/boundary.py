@@ -24,8 +24,8 @@ from standoff.bodies.moments.flux import (
 from standoff.bodies.moments.skin import skin_cells
 from standoff.bodies.topology import Edge, Face
 from standoff.geometry.curves import Curve
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Computed points of the boundary have this many roundings (eps of the frame's reach, and of the
 # distance of the surfaces' own origins) from affine maps, jets and sums.

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.moments.tolerances import LEAST_SHARE
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Levels of the rules along each parameter: 2^k - 1 nodes. After the last one a cell is halved.
 FIRST_LEVEL, LAST_LEVEL = 3, 6

@@ -19,7 +19,7 @@ from standoff.bodies.moments.flux import Frame, flux, offset_areas
 from standoff.geometry.curves import Curve
 from standoff.geometry.quadrics import sphere_atlas
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 OverSphere = Callable[[Array], Array]
 """Unit vectors (..., 3) to values (..., columns)."""

@@ -20,8 +20,8 @@ from standoff.bodies.moments.tolerances import ANGLE_TOLERANCE
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.support_sets import curve_breaks
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Signs of the integrand's columns when the normal is reversed: all but the area change.
 FLIPPED = np.where(np.arange(COLUMNS) == AREA, 1.0, -1.0)

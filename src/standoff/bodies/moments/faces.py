@@ -23,10 +23,10 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import chart_row, surface_of
 from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.geometry.vectors import crosses
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_places, surface_jets
+from standoff.typing import Array
 
 # Points of a trimming curve between which it crosses a line of constant u or v at most once.
 SAMPLES = 65

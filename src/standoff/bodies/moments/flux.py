@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 FIRST = slice(0, 3)  # ∫ x dV
 SECOND = slice(3, 9)  # ∫ x xᵀ dV: xx, yy, zz, xy, yz, zx

@@ -24,9 +24,9 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.support_sets import curve_breaks
 from standoff.bodies.tessellation import chart_row
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_conormal
+from standoff.typing import Array
 
 # A normal shorter than this is not a unit vector: its chart has collapsed there.
 HALF = 0.5

@@ -36,7 +36,8 @@ from standoff.bodies.proofs.tolerances import (
 from standoff.errors import StandoffError
 from standoff.geometry import bernstein
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.validation import Array, Domain
+from standoff.geometry.validation import Domain
+from standoff.typing import Array
 
 Box = tuple[Cell, CurvatureBound]
 

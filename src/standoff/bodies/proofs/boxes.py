@@ -15,7 +15,7 @@ from standoff.bodies.proofs.tolerances import (
     TIGHT_JACOBIAN,
 )
 from standoff.geometry import bernstein
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Greatest number of halvings of one parameter; a box that small keeps its size as its bound. At a
 # singular corner, size and rounding of the normals then matter equally; at a sharp apex the normals

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Layers of curvature k, k/4, k/16 ... to below 1e-14 k: more would not help.
 LAYERS = 24

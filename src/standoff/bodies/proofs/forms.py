@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from standoff.bodies.proofs.tolerances import COLLAPSED_SIDE, SMOOTH_POLE
 from standoff.geometry import bernstein
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Products are computed in the widest floating-point type of the platform, so that cancellation
 # amplifies only the rounding of the control points themselves.

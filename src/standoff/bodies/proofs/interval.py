@@ -35,7 +35,7 @@ from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.formulas.enclosures import Enclosure, hull, images
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import TINY, Interval
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # The search may end when the bound of the least curvature is within this factor of a value seen.
 NEARNESS = 1.05

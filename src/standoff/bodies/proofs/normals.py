@@ -10,7 +10,7 @@ from standoff.bodies.proofs.boxes import ROOT, Cell
 from standoff.bodies.proofs.forms import Forms
 from standoff.bodies.proofs.tolerances import HEIGHT_ROUNDING
 from standoff.geometry import bernstein
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Boxes examined in one span before its normals count as not proven.
 MOST_BOXES = 600

@@ -25,7 +25,7 @@ from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.nurbs_curves import NurbsCurve
 from standoff.geometry.swept import Extrusion, Revolution
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Longest arc of one rational quadratic (radians): its weights stay well above zero.
 LONGEST_ARC = 0.5 * np.pi

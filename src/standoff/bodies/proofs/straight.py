@@ -19,7 +19,7 @@ from standoff.bodies.proofs.boxes import Cell
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
 from standoff.bodies.proofs.tolerances import NORMAL_ROUNDING
 from standoff.geometry import bernstein
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Halvings of a span along its curve before normals are compared: on each part they turn little.
 SPAN_HALVINGS = 4

@@ -28,8 +28,8 @@ from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.quadrics import sphere_atlas
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Points of an edge at which its faces' normals are compared.
 COMPARED = 5

@@ -12,7 +12,7 @@ from standoff.bodies.features import Feature
 from standoff.bodies.rounding.strips import arc_about
 from standoff.bodies.tolerances import NO_STRIP
 from standoff.bodies.topology import Edge, Face
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 class Origin(NamedTuple):

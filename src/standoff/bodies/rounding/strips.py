@@ -11,8 +11,8 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.quadrics import Cylinder, Sphere, sphere_atlas
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.torus import Torus
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Points of each side of a spherical polygon that its chart must see.
 SEEN = 9

@@ -13,8 +13,8 @@ from standoff.geometry.roundness import alike, round_arc, square
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Revolution
 from standoff.geometry.torus import Torus
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 
 class MovedSurface(NamedTuple):

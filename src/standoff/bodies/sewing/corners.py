@@ -13,7 +13,7 @@ from standoff.bodies.sewing.patches import Patch
 from standoff.bodies.sewing.sides import SIDE_NAMES, Side
 from standoff.bodies.tolerances import MAX_SPREAD
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Corners of a patch in the order of SIDE_NAMES: side k runs from corner k to corner k + 1.
 _CORNERS = ((0, 2), (1, 2), (1, 3), (0, 3))

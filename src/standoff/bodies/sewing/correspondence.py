@@ -25,8 +25,8 @@ from standoff.bodies.tolerances import (
 from standoff.errors import BodyError
 from standoff.geometry.nurbs_pcurves import NurbsPcurve
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Fractions of an edge where the correspondence is computed, and (between them) checked.
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, 12) / 12)

@@ -15,7 +15,7 @@ from standoff.bodies.sewing.sides import SIDE_NAMES, Side, gap
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Halvings of one patch before it counts as singular: into up to 2^8 pieces.
 PATCH_HALVINGS = 8

@@ -23,7 +23,7 @@ from standoff.errors import BodyError
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # A suggested tolerance is this much larger than the gap that was found at samples.
 ROOM = 1.02

@@ -13,7 +13,7 @@ from standoff.bodies.sewing.sides import SENSES
 from standoff.bodies.tolerances import LEAST_THICKNESS
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 Pairs = Sequence[tuple[Stretch, Stretch]]
 # Gauss points along u and v for the volume, of which only sign and order of magnitude are needed.

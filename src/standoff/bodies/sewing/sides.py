@@ -9,7 +9,8 @@ import numpy as np
 
 from standoff.bodies.tolerances import PROJECTION_STEP
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, inside
+from standoff.geometry.validation import inside
+from standoff.typing import Array
 
 # Counterclockwise in (u, v), and for each, +1 if its free parameter increases in that direction.
 SIDE_NAMES = ("v0", "u1", "v1", "u0")

@@ -9,7 +9,7 @@ from standoff.checks.arrays import finite
 from standoff.checks.numbers import magnitude
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffTypeError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def by_position(

@@ -17,7 +17,7 @@ from standoff.errors import BodyError
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Fewer patches than this would not keep their normals within a hemisphere.
 LEAST_PATCHES = 3

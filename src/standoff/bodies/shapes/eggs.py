@@ -14,8 +14,8 @@ from standoff.geometry.curves import ConicArc, RationalBezier
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.pcurves import Pcurve
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Greatest |taper|: from sqrt(1/2) on an egg is hollow near its pointed end.
 GREATEST_TAPER = 0.7

@@ -12,7 +12,7 @@ from standoff.checks.numbers import magnitude, magnitude_or_zero
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.quadrics import Sphere, sphere_atlas
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def lens(radius: float, offset: float, *, rounding: float = 0.0) -> Body:

@@ -11,7 +11,8 @@ from standoff.bodies.topology import Edge
 from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import StandoffTypeError
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import Array, vector3
+from standoff.geometry.validation import vector3
+from standoff.typing import Array
 
 
 def point(*, rounding: float = 0.0) -> Body:

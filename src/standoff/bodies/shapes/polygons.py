@@ -16,7 +16,7 @@ from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import BodyError
 from standoff.geometry.curves import Line
 from standoff.geometry.quadrics import Plane
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def polygon(vertices: Any, *, rounding: float = 0.0) -> Body:

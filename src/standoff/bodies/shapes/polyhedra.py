@@ -23,7 +23,7 @@ from standoff.bodies.tolerances import FLATTEST, LEAST_CORE, SAME_VERTEX
 from standoff.checks.arrays import finite
 from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import BodyError, StandoffError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # The corners and outward normals of a box. Its vertices, edges and faces are numbered after them,
 # and its digest depends on the signs of the zeros.

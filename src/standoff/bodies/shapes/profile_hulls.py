@@ -23,7 +23,7 @@ from standoff.bodies.tolerances import (
 )
 from standoff.errors import BodyError
 from standoff.geometry.curves import ConicArc, Curve
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Samples of the curve: a concavity narrower than a sample interval counts as convex.
 SAMPLES = 2048

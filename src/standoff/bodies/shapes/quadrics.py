@@ -13,7 +13,8 @@ from standoff.checks.numbers import magnitude, magnitude_or_zero, number
 from standoff.errors import StandoffError
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.quadrics import Cone, Cylinder, Plane, Sphere, sphere_atlas
-from standoff.geometry.validation import Array, vector3
+from standoff.geometry.validation import vector3
+from standoff.typing import Array
 
 # Cosine up to which an axis is perpendicular enough to a normal for a plane's first direction.
 SQUARE_ENOUGH = 0.8

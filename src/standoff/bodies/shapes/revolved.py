@@ -13,7 +13,7 @@ from standoff.checks.numbers import magnitude_or_zero
 from standoff.geometry.curves import FULL_TURN, ConicArc, Curve, Line
 from standoff.geometry.quadrics import Cone, Cylinder, Plane
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def hull_of_revolution(curve: Curve, *, rounding: float = 0.0) -> Body:

@@ -19,8 +19,8 @@ from standoff.geometry.superellipsoids import (
     checked_exponent,
 )
 from standoff.geometry.surface_curves import SurfaceCurve
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 Signs = tuple[int, int, int]
 

@@ -11,7 +11,7 @@ from standoff.bodies.voronoi.outline import Outline
 from standoff.bodies.voronoi.regions import MedialBranch
 from standoff.bodies.voronoi.tolerances import CHECK_SAMPLES, SAME_DEPTH
 from standoff.errors import VoronoiError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # The polyline may miss the true axis by its tolerance between two points, but this was checked at
 # only one point between them: this many times more is certainly wrong.

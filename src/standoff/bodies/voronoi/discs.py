@@ -17,8 +17,8 @@ from standoff.bodies.voronoi.tolerances import (
     PART_SAMPLES,
     SOLVED,
 )
-from standoff.geometry.validation import Array
 from standoff.kernels.tolerances import EPS
+from standoff.typing import Array
 
 # Radii between two samples are not smaller than theirs by more than this factor.
 FAR_ABOVE = 4.0

@@ -16,8 +16,8 @@ import scipy
 from standoff.bodies.voronoi.discs import edge_distances
 from standoff.bodies.voronoi.outline import Outline, Place
 from standoff.bodies.voronoi.tolerances import AT_END, FLAT_CURVATURE, SAME_DEPTH
-from standoff.geometry.validation import Array
 from standoff.kernels.tolerances import EPS
+from standoff.typing import Array
 
 
 class Leaf(NamedTuple):

@@ -27,7 +27,7 @@ from standoff.bodies.voronoi.tolerances import (
     SAME_PLACE,
 )
 from standoff.errors import VoronoiError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Least and greatest number of bisections of a branch: the least so that symmetry hides no bend.
 LEAST_DEPTH, MOST_DEPTH = 3, 14

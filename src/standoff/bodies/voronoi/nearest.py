@@ -15,7 +15,7 @@ from standoff.bodies.voronoi.search import Boundary
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Number of bodies whose sampled boundaries are cached.
 KEPT = 16

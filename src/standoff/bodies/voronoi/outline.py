@@ -18,9 +18,9 @@ from standoff.bodies.body import Body
 from standoff.bodies.voronoi.tolerances import CORNER_TURN, OUTLINE_SAMPLES
 from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 Place: TypeAlias = tuple[int, float]
 

@@ -20,7 +20,7 @@ from standoff.bodies.voronoi.regions import (
 from standoff.bodies.voronoi.tolerances import FINEST_POLYLINE, POLYLINE, SAME_PLACE
 from standoff.checks.numbers import magnitude
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 
 def planar_regions(body: Body, reach: float, tolerance: float | None) -> VoronoiRegions:

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.voronoi.nearest import nearest_feature
-from standoff.geometry.validation import Array
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 
 class RegionBoundary(NamedTuple):

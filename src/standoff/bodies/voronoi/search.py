@@ -14,11 +14,11 @@ from standoff.bodies.tessellation import chart_box, chart_outline, chart_row
 from standoff.bodies.voronoi.tolerances import FOOT_AT_REST, OFF_NORMAL
 from standoff.errors import StandoffError
 from standoff.geometry.curves import Curve
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, feature_jet, on_face
 from standoff.kernels.tolerances import EPS
 from standoff.read_only import KeepsReadOnly
+from standoff.typing import Array
 
 # Samples along an edge, and along each side of a chart.
 ALONG, GRID, COARSE_GRID, FEW_CHARTS = 65, 13, 5, 24

@@ -16,9 +16,9 @@ from standoff.bodies.topology import Apex
 from standoff.bodies.voronoi.regions import NormalCone, RegionBoundary, VoronoiRegions
 from standoff.bodies.voronoi.tolerances import CORNER_TURN
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
+from standoff.typing import Array
 
 # Rays along an edge and in a fan: enough that a drawn surface shows no corners.
 ALONG_EDGE = 49

@@ -23,7 +23,7 @@ from standoff.geometry.formulas.enclosures import (
 from standoff.geometry.formulas.expressions import parameter_values, read_expression
 from standoff.geometry.intervals import Interval
 from standoff.geometry.tolerances import VANISHING_NORMAL
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 SURFACE_VARIABLES = ("u", "v")
 CURVE_VARIABLES = ("t",)

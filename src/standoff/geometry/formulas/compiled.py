@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.formulas.programs import Writer, jet_expressions
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Names that the compiled text may use.
 MATH = {

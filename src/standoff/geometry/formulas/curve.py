@@ -20,8 +20,9 @@ from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, hull
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.tolerances import CLOSED_CURVE
-from standoff.geometry.validation import Array, affine_map
+from standoff.geometry.validation import affine_map
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 # Number of boxes whose hull is the box of a curve: its excess decreases with the square.
 BOX_GRID = 256

@@ -12,7 +12,7 @@ from standoff.geometry.formulas.programs import ENCLOSED, Writer
 from standoff.geometry.interval_vectors import mapped
 from standoff.geometry.intervals import FUNCTIONS, Interval, interval
 from standoff.geometry.tolerances import SMALLEST_BOX
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Boxes per side with which a search begins.
 FIRST_GRID = 8

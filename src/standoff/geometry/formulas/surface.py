@@ -19,8 +19,9 @@ from standoff.geometry.formulas.checks import (
 from standoff.geometry.formulas.compiled import Formula, compiled
 from standoff.geometry.formulas.enclosures import Enclosure, hull
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array, affine_map
+from standoff.geometry.validation import affine_map
 from standoff.kernels.body import layout as L
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.geometry.boxes import Boxes

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.drawing.body_view import LIGHT, across, direction_to_viewer
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 PIXELS = 1000
 """Of a picture's longer side: about those of a page, so that slanted sides are not jagged."""

@@ -12,10 +12,10 @@ import scipy
 from standoff.bodies.drawing.pair_picture import COLOURS, WITNESS_COLOUR
 from standoff.bodies.plain_data import without_roundoff
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.tolerances import FARTHER, FLAT_BOX
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.wording import counted
 
 with of_extra("matplotlib", "plot"):

@@ -11,10 +11,10 @@ from standoff.bodies.drawing.body_view import FACE_COLOURS, NORMAL_COLOUR, SEAM_
 from standoff.bodies.drawing.pair_picture import COLOURS, MARGIN
 from standoff.bodies.features import Feature
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.marks import draw_marks, marks_legend
 from standoff.solids.planar.loops import Loop, points_along
+from standoff.typing import Array
 from standoff.wording import short_name
 
 with of_extra("matplotlib", "plot"):

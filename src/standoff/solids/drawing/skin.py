@@ -15,8 +15,8 @@ from standoff.bodies.drawing.solids import solid_of
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import EdgeLine
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 from standoff.solids.drawing.camera import Camera, Raster, brightness, rastered, visible
+from standoff.typing import Array
 
 with of_extra("matplotlib", "plot"):
     from matplotlib.artist import Artist

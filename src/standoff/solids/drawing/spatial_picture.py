@@ -12,7 +12,6 @@ from standoff.bodies.drawing.body_view import FACE_COLOURS, VIEWS, round_length
 from standoff.bodies.drawing.pair_picture import COLOURS, USUAL_VIEW
 from standoff.bodies.features import Feature
 from standoff.errors import of_extra
-from standoff.geometry.validation import Array
 from standoff.solids.answer import SolidProximity
 from standoff.solids.drawing.camera import Camera, camera_on, visible
 from standoff.solids.drawing.marks import draw_marks, has_places, marks_legend
@@ -25,6 +24,7 @@ from standoff.solids.drawing.skin import (
     raster_of,
     skin_of,
 )
+from standoff.typing import Array
 from standoff.wording import short_name
 
 with of_extra("matplotlib", "plot"):

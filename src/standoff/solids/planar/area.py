@@ -5,14 +5,12 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.intervals import Interval
 from standoff.solids.planar.loops import Loop, ends_of, size_of
 from standoff.solids.planar.tolerances import PADDED
 
-Array = NDArray[np.float64]
 # Parts of a smooth piece of a curve, for the error: by its part of the solid's size.
 FEWEST_PARTS, MOST_PARTS = 24, 512
 GAUSS_PARTS = 12  # for the value

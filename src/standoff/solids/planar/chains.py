@@ -11,9 +11,8 @@ from scipy.spatial import cKDTree
 from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
 from standoff.solids.planar.loops import ends_of
+from standoff.typing import Array
 from standoff.wording import counted
-
-Array = NDArray[np.float64]
 
 
 class Chains(NamedTuple):

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.answer import Continuum
 from standoff.solids.planar.pair import Queried
 from standoff.solids.planar.tolerances import LONG_SET, ONE_PAIR
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def distinct(pair: Queried, rows: Array) -> Array:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive
 from standoff.checks.units import METRES, known_unit
@@ -23,9 +22,9 @@ from standoff.solids.planar.dxf_markers import with_markers
 from standoff.solids.planar.loops import size_of
 from standoff.solids.planar.solid import solids_of
 from standoff.solids.planar.tolerances import JOINED, JOINED_IN_DRAWING
+from standoff.typing import Array
 from standoff.wording import counted
 
-Array = NDArray[np.float64]
 NO_GEOMETRY = frozenset(
     {"ATTDEF", "ATTRIB", "DIMENSION", "HATCH", "LEADER", "MTEXT", "MULTILEADER", "POINT", "TEXT"}
     | {"VIEWPORT", "IMAGE", "WIPEOUT", "TABLE", "TOLERANCE", "XLINE", "RAY"}

@@ -20,8 +20,7 @@ from standoff.solids.planar.tolerances import (
     TURN_OF_LEAF,
     UNEVEN_LEAF,
 )
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 MOST_CUTS = 14
 FEWEST_LEAVES = 3  # of a loop, so that no two leaves share both ends

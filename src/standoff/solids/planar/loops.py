@@ -15,8 +15,8 @@ from standoff.geometry.curves import Curve
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.leaves import FEWEST_LEAVES, Leaves, leaves_of
 from standoff.solids.planar.tolerances import IN_PLANE, JOINED
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 DRAWN = 65  # points of a curve in pictures
 
 

@@ -5,16 +5,13 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.entries import planar_solids as entries
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.loops import Loop, packed_loop
 from standoff.solids.planar.tolerances import BOUND_ROUNDED
 from standoff.solids.planar.tree import built, leaf_radii
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class Outline(NamedTuple):

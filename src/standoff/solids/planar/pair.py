@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.bodies.features import Feature
 from standoff.geometry.curves import Curve
 from standoff.solids.planar.loops import Loop
 from standoff.solids.planar.outline import Outline
 from standoff.solids.planar.tolerances import BOUND_ROUNDED
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Shape(Protocol):

@@ -30,8 +30,7 @@ from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_T
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.inputs import check_in_plane, flat_pose
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 CAPACITY = 1 << 17  # pairs of pieces that may be open or were
 MOST_FOUND = 2048

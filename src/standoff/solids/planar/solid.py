@@ -30,11 +30,11 @@ from standoff.solids.planar.outline import Outline, packed_outline
 from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.tolerances import PROVEN_TO, SMOOTH_TURN
 from standoff.solids.plotted import Plotted, checked_answer
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Array = NDArray[np.float64]
 VertexKind = Literal["convex", "reflex", "smooth"]
 
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.solids import planar_layout as P
+from standoff.typing import Array, Ints
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 # Rounding outward of radii: a few operations.
 OUTWARD = 1.0 + 64.0 * float(np.finfo(np.float64).eps)
 

@@ -9,7 +9,6 @@ from standoff.geometry.curves import Curve, Line
 from standoff.geometry.roundness import alike, square
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.swept import Revolution
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import (
@@ -20,6 +19,7 @@ from standoff.kernels.solids.torus_potential import (
     TORUS_THROUGH,
 )
 from standoff.solids.spatial.tolerances import ROUND_KIND
+from standoff.typing import Array
 
 
 def natural_of(chart: FaceChart) -> tuple[int, Array]:

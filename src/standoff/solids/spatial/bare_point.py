@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
-from standoff.geometry.validation import Array
 from standoff.motion.pose import Pose
 from standoff.solids.spatial.leaves import vertex_leaf
 from standoff.solids.spatial.points import POINT
 from standoff.solids.spatial.solid_model import SolidModel
+from standoff.typing import Array
 
 
 class BarePoint(SolidModel):

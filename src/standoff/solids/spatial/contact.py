@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solid_contact import pieces_parted, signed_minima
 from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, SET_ROW
@@ -24,6 +23,7 @@ from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import LEAST_LENGTH
+from standoff.typing import Array
 
 MOST_REGIONS = 64
 """Minima below 0 that are looked at."""

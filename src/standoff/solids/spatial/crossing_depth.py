@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.queries import on_face
 from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import LEAST_ANGLE, LEAST_LENGTH
+from standoff.typing import Array
 
 # Halvings of a length, from the solid's size on, and of what is left of it.
 HALVINGS, REFINED = 40, 6

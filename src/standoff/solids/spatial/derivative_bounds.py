@@ -19,9 +19,9 @@ from standoff.geometry.series import Series, power
 from standoff.geometry.surface_curves import SurfaceCurve
 from standoff.geometry.surfaces import Surface
 from standoff.geometry.swept import Extrusion, Revolution
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.solids.spatial.tolerances import DERIVATIVE_INFLATION
+from standoff.typing import Array
 
 # Columns: first (2), second (3), third (4) derivatives, spread of the second (3).
 COLUMNS = 12

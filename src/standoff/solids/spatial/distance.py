@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.motion.pose import Pose
 from standoff.solids.answer import MOST_OPEN, Continuum, PointPair, SolidProximity
@@ -31,6 +30,7 @@ from standoff.solids.spatial.told import UNDEFINED, Inside, Told, answer_of
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_TOLERANCE
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
+from standoff.typing import Array
 
 # Common points of the boundaries beside which a point inside both is sought, where nothing parts
 # the solids.

@@ -25,7 +25,6 @@ from standoff.bodies.tolerances import SMOOTH_ANGLE
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.patch_bounds import between
 from standoff.geometry.roundness import round_arc
-from standoff.geometry.validation import Array
 from standoff.geometry.vectors import crosses
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, coedge_parameters
@@ -41,6 +40,7 @@ from standoff.solids.spatial.leaves import (
 )
 from standoff.solids.spatial.tolerances import ONE_AXIS, ROUND_KIND, TURN_ROUNDING
 from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
+from standoff.typing import Array
 
 # Parts of an edge at first, radians; and how often a part is halved.
 FIRST_ARC = 0.6

@@ -20,7 +20,6 @@ from standoff.bodies.features import Feature
 from standoff.bodies.shapes.polyhedra import box
 from standoff.bodies.tessellation import chart_row
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.motion.pose import Pose
 from standoff.solids.spatial.leaves import Leaf
@@ -28,6 +27,7 @@ from standoff.solids.spatial.minimum import leaf_jet_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import SPOT_SPARE
 from standoff.solids.spatial.tree import packed_leaves
+from standoff.typing import Array
 
 HALF_SIDE = 1.25
 """Radii of the ball round the solid that half of a side is at least: points beside the solid at

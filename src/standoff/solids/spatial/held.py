@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import local_side, part_extents
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import (
@@ -27,8 +26,7 @@ from standoff.solids.spatial.pair import PlacedPair, middle_of, references_of
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import BESIDE_CONTACT, BESIDE_DEPTH
-
-IntArray = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 # Halvings of a leaf: at a corner down to the tolerance, in both parameters.
 MOST_CUTS = 70
@@ -183,7 +181,7 @@ class _Sides:
             return False
         return all(self._part(leaf, half, cuts + 1) for half in self._halves(leaf, box))
 
-    def _potentials(self, near: IntArray, middle: Array) -> list[int]:
+    def _potentials(self, near: Ints, middle: Array) -> list[int]:
         """-1, for none; then leaves of A that have a potential of their own, one leaf for
         each, the nearest first."""
         leaves = self.pair.a.leaves
@@ -207,7 +205,7 @@ class _Sides:
         part_extents(self.pair.b.packed, np.eye(3).ravel(), leaf, np.ascontiguousarray(box), out)
         return out[:3], out[3:]
 
-    def _asked(self, leaf: int, box: Array, over: int, near: IntArray) -> Array:
+    def _asked(self, leaf: int, box: Array, over: int, near: Ints) -> Array:
         pair, shift = self.pair, float(np.linalg.norm(self.pair.relative[9:]))
         told, _ = started(Sought(self.tolerance), pair.size, shift)
         local_side(

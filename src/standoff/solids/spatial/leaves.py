@@ -16,7 +16,6 @@ from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.curves import ConicArc
 from standoff.geometry.patch_bounds import between
 from standoff.geometry.roundness import round_arc
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import edge_jet, on_face
 from standoff.kernels.solids import spatial_layout as S
@@ -35,6 +34,7 @@ from standoff.solids.spatial.tolerances import (
     SPOT_SPARE,
 )
 from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
+from standoff.typing import Array
 
 # Half angle of a leaf's cone of normals, radians.
 WIDEST = 0.5

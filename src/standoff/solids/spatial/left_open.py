@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.bodies.features import NO_FEATURE, Feature
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import part_extents
 from standoff.kernels.solids import spatial_layout as S
 from standoff.solids.answer import MOST_OPEN, OpenPair
@@ -13,6 +12,7 @@ from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tree import CORNERS
+from standoff.typing import Array
 
 
 def open_pairs(pair: PlacedPair, found: Found) -> tuple[tuple[OpenPair, ...], int]:

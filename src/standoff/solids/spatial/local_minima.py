@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.minima import greatest_gap
 from standoff.kernels.entries.queries import on_face
 from standoff.kernels.solids.spatial_progress import BOUND
@@ -20,6 +19,7 @@ from standoff.solids.spatial.points import distance_to_boundary
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import is_minimum
 from standoff.solids.spatial.ties import same_as, spots_of
+from standoff.typing import Array
 
 # Where between two pairs the boundaries are looked at: what is half way may be on another piece of
 # them by symmetry.

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import boundary_distance, solid_point
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids import spatial_progress as C
 from standoff.solids.answer import SolidCounts
 from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING, PROOF_TOLERANCE
+from standoff.typing import Array
 
 HEAP = 1 << 16
 PAIRS = 1 << 14

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.hulls.fewer_points import directions
-from standoff.geometry.validation import Array
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.minimum import evaluations_of
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.tolerances import LAST_CLIMB, LEAST_LENGTH, LOOKS
+from standoff.typing import Array
 
 # Of the box around both: where depths are looked at first.
 LATTICE = np.array(list(product((0.5, 1.0 / 6.0, 5.0 / 6.0), repeat=3)))

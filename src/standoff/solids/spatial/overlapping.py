@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.solids.answer import NEAR_BOUNDS, Overlap, SolidProximity
@@ -32,6 +31,7 @@ from standoff.solids.spatial.tolerances import CONTACT_REACH, HELD_WAY, PARTED_S
 from standoff.solids.spatial.way_out import GapOf, short_way
 from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
+from standoff.typing import Array
 
 Answered = tuple[SolidProximity, list[Place]]
 """An answer, and the places of its minima."""

@@ -13,16 +13,15 @@ from numpy.typing import NDArray
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import surface_of
 from standoff.geometry.surfaces import Surface
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import near_own_leaves
 from standoff.solids.spatial.derivative_bounds import surface_derivatives
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import JOINT_PARTS, JOINT_ROOM, VERTEX_SHARE
+from standoff.typing import Array, Ints
 
-Pairs = NDArray[np.int64]
 # Room for nodes that wait: two for each level of the tree.
 WAITING = 2048
-# Pairs of leaves for each leaf that there is room for at first.
+# Starts of leaves for each leaf that there is room for at first.
 USUAL = 16
 
 
@@ -38,11 +37,11 @@ class OwnPairs(NamedTuple):
     """
 
     faces: tuple[int, int]
-    leaves: Pairs
+    leaves: Ints
     joint: Array
 
 
-def near_pairs(solid: SolidModel, within: float) -> Pairs:
+def near_pairs(solid: SolidModel, within: float) -> Ints:
     """(n, 2) leaves of faces whose boxes are not farther apart than a length, each pair once; a
     leaf is beside itself."""
     room = USUAL * len(solid.leaves)
@@ -79,7 +78,7 @@ def own_pairs(solid: SolidModel, within: float) -> tuple[list[OwnPairs], int]:
     return found, beside
 
 
-def _within_face(solid: SolidModel, pairs: Pairs) -> tuple[Pairs, int]:
+def _within_face(solid: SolidModel, pairs: Ints) -> tuple[Ints, int]:
     """Of pairs of one face: those that have to be looked at, and how many leaves beside each other
     may meet there."""
     leaf = solid.leaves[int(pairs[0, 0])]

@@ -9,7 +9,6 @@ from itertools import islice
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import gradient, leaf_points, nearest_in_leaves
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.spatial_progress import BOUND
@@ -27,6 +26,7 @@ from standoff.solids.spatial.tolerances import (
     LEAST_LENGTH,
     PROOF_ROUNDING,
 )
+from standoff.typing import Array
 
 # Reference points, which are tried until one is off the other's boundary.
 REFERENCES = 6

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.minima import span_patches
 from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.minima_sets import (
@@ -19,6 +18,7 @@ from standoff.kernels.solids.minima_sets import (
 from standoff.solids.answer import PointPair
 from standoff.solids.spatial.minimum import Found
 from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.typing import Array
 
 
 def patches_of(

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.solid_points import point_depth, side_beside
 from standoff.kernels.solids import spatial_layout as S
@@ -28,6 +27,7 @@ from standoff.solids.spatial.minimum import (
 from standoff.solids.spatial.sides import number_of, outside_direction, vertex_normals_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING, PROOF_TOLERANCE, SAME_SPOT
+from standoff.typing import Array
 
 
 class PointDistances(NamedTuple):

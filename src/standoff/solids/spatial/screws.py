@@ -13,10 +13,10 @@ import numpy as np
 
 from standoff.bodies.face_leaves import FaceChart
 from standoff.geometry.nurbs import NurbsSurface
-from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.solids.spatial.leaves import Leaf
 from standoff.solids.spatial.tolerances import ALONG_SCREW, LEAST_TURN, MANY_SCREWS, OFF_THREAD
+from standoff.typing import Array
 
 # Samples of a face along each of its parameters.
 SAMPLES = 8

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.tessellation import surface_of
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.solids import meet_own_leaves
 from standoff.kernels.solids import spatial_self as K
 from standoff.motion.pose import Pose
@@ -23,6 +22,7 @@ from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.ties import starts
 from standoff.solids.spatial.tolerances import MEETING, MEETING_SLACKS, PROVEN_SHARE, SHORT_WAY
+from standoff.typing import Array
 from standoff.wording import counted
 
 # Evaluations for one pair of leaves, at most.

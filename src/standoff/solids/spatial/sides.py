@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.bodies.tessellation import chart_row, coedge_range
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import chart_normal, coedge_parameters, edge_jet
 from standoff.kernels.entries.solid_points import outward_at
 from standoff.kernels.solids.spatial_tolerances import NO_SIDE
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import CUSP, PIECE_END_SPARE
+from standoff.typing import Array
 
 
 def outside_direction(solid: SolidModel, leaf: int, u: float, v: float) -> Array | None:

@@ -16,13 +16,13 @@ from standoff.bodies.report import BodyReport, BoundaryReport
 from standoff.checks.numbers import positive
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
-from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.motion.pose import Pose
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.spatial.tolerances import MASS_TOLERANCE
 from standoff.solids.spatial.tree import packed_leaves
+from standoff.typing import Array
 from standoff.wording import printable
 
 if TYPE_CHECKING:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.minima import stationary
 from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY
@@ -16,6 +15,7 @@ from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.sides import charts_at, corners_at
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
+from standoff.typing import Array
 
 # Directions that are looked into at a vertex that is a face's collapsed side.
 WAYS_AROUND = 17

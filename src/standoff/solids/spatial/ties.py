@@ -9,7 +9,6 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries.minima import one_place
 from standoff.solids.answer import Continuum
 from standoff.solids.spatial.minimum import Found
@@ -19,6 +18,7 @@ from standoff.solids.spatial.tolerances import (
     BENDS_LESS,
     CONTINUUM_LENGTH,
 )
+from standoff.typing import Array
 
 # How many of the nearest pairs are tried.
 TRIED = 6

@@ -11,7 +11,6 @@ from standoff.bodies.boundary import Boundary
 from standoff.bodies.face_leaves import face_charts
 from standoff.bodies.packed_parts import PackedParts
 from standoff.geometry.patch_bounds import between
-from standoff.geometry.validation import Array
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of
@@ -28,6 +27,7 @@ from standoff.solids.spatial.leaves import (
 from standoff.solids.spatial.screws import put_screws
 from standoff.solids.spatial.tolerances import CONE_ROUNDINGS, NO_AXIS
 from standoff.solids.spatial.trims import Piece, columns_of, pieces_of
+from standoff.typing import Array
 
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
 

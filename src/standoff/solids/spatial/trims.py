@@ -15,11 +15,11 @@ from standoff.bodies.tessellation import coedge_range, packed_pcurve
 from standoff.geometry.bernstein import segments
 from standoff.geometry.curves import ConicArc, Curve, Line
 from standoff.geometry.pcurve_boxes import bezier_bend, bezier_box, pcurve_bends, pcurve_boxes
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries.queries import coedge_parameters
 from standoff.solids.spatial.derivative_bounds import curve_derivatives
 from standoff.solids.spatial.tolerances import BEND_SPARE, TURN_SPARE
+from standoff.typing import Array
 
 # Parts of a trimming curve by its kind.
 PARTS = {L.LINE: 1, L.CONIC: 8, L.BEZIER: 4}

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from standoff.bodies.hulls.fewer_points import directions
-from standoff.geometry.validation import Array
 from standoff.solids.parting import Gap, shortest
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.tolerances import PARTED_SPARE, PROOF_ROUNDING
+from standoff.typing import Array
 
 GapOf = Callable[[PlacedPair, float], Gap | None]
 """How far a pair is apart, proven to a tolerance, and the normal there; None where it is not."""

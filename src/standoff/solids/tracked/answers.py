@@ -15,13 +15,12 @@ from standoff.read_only import KeepsReadOnly
 from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from matplotlib.figure import Figure
-
-Array = NDArray[np.float64]
 
 
 class Places(NamedTuple):

@@ -44,8 +44,7 @@ from standoff.solids.tracked.front import (
     room_for,
 )
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Asks(NamedTuple):

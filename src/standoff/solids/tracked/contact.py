@@ -32,8 +32,8 @@ from standoff.solids.spatial.sides import vertex_normals_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.tracked.front import MOST_BRANCHES, Front, merged_of
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 N_COUNTS = 16
 
 

@@ -15,8 +15,7 @@ from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.solids.answer import NearestPair, SolidProximity
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.tracking.branches import NONE, Birth, End
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def minima_of(

@@ -7,7 +7,6 @@ from operator import attrgetter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.kernels.entries import tracked_solids as T
@@ -30,8 +29,8 @@ from standoff.solids.tracked.run import Run, status_of
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.inputs import LAST_ROW, flat_and_mark, repair
 from standoff.tracking.status import Status
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 ARRAY = np.ndarray
 
 

@@ -38,8 +38,8 @@ from standoff.solids.spatial.minimum import MOST_LOCAL, Found, Sought, found_of,
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.stationary import NONE, Fans
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING
+from standoff.typing import Array
 
-Array = NDArray[np.float64]
 MOST_ROWS = 1 << 16
 """Rows that a front may have: more are not cut any further, so that an interval is told."""
 MOST_BRANCHES = 1 << 8

@@ -25,9 +25,9 @@ from standoff.solids.tracked.state import SolidState
 from standoff.tracking.branches import NONE, Birth
 from standoff.tracking.rows import Counts
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.version import __version__
 
-Array = NDArray[np.float64]
 Mode = tuple[Feature, Feature]
 
 LOOKED_INTO = (Status.CONVERGED, Status.CONTAINED)

@@ -27,8 +27,7 @@ from standoff.solids.tracked.front import NO_ROWS, Frames, Front, moved_by, room
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Run:

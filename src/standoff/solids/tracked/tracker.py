@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.checks.numbers import positive, whole_number
 from standoff.checks.real_numbers import shown
@@ -31,14 +30,13 @@ from standoff.solids.tracked.front import Frames, Front
 from standoff.solids.tracked.run import Run
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
+from standoff.typing import Array
 
 if TYPE_CHECKING:
     from standoff.motion import PoseLike, PosesLike
     from standoff.motion.moving import Moving
     from standoff.progress import Progress
     from standoff.recording import Recording
-
-Array = NDArray[np.float64]
 
 
 @hides("answers_of", "asks", "frames", "recorded_along", "telling_features")

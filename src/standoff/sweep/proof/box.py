@@ -7,14 +7,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.sweep.parameters import Parameter, in_ranges
 from standoff.sweep.proof.cells import DEEPEST, Cells
 from standoff.sweep.proof.summary import Kind
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class Looked(NamedTuple):
@@ -36,8 +33,8 @@ class Looked(NamedTuple):
         As of `Cells`, for their halves.
     """
 
-    kind: Whole
-    along: Whole
+    kind: Ints
+    along: Ints
     lower: Array
     distance: Array
     queries: int
@@ -110,7 +107,7 @@ class ParameterBox(ABC):
     def look(self, cells: Cells) -> Looked:
         """Decide of each cell. What is decided depends on that cell alone."""
 
-    def decided(self, cells: Cells, moved: Array, told: Told, asked: Whole) -> Looked:
+    def decided(self, cells: Cells, moved: Array, told: Told, asked: Ints) -> Looked:
         """Return what is decided by what was told of all cells; `asked` counts queries and those
         that are not proven."""
         missed = ~(told.distance >= self.clearance)

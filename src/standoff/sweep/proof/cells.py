@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 DEEPEST = 50
 """Most halvings along one parameter: all middles are then exact in a double."""
@@ -29,8 +28,8 @@ class Cells(NamedTuple):
         columns where there is but one pair.
     """
 
-    place: Whole
-    depth: Whole
+    place: Ints
+    depth: Ints
     known: Array
 
     @classmethod
@@ -61,16 +60,16 @@ class Cells(NamedTuple):
         return halves
 
     @property
-    def levels(self) -> Whole:
+    def levels(self) -> Ints:
         """(n,) how often each was halved in all: its volume is 2**-level of the box's."""
-        levels: Whole = self.depth.sum(axis=1)
+        levels: Ints = self.depth.sum(axis=1)
         return levels
 
     def at(self, which: Any) -> Cells:
         """Return some of them."""
         return Cells(*(column[which] for column in self))
 
-    def halved(self, along: Whole) -> Cells:
+    def halved(self, along: Ints) -> Cells:
         """Return both halves of each, next to each other.
 
         Parameters

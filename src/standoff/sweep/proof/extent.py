@@ -4,15 +4,13 @@ along directions."""
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.impact.moment import Box
 from standoff.kernels.body import layout as L
 from standoff.tracking.many_distances import answered_rows
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 SIDE = 20
 """Directions along each side of the cube whose faces they fill: 2400 queries once per body, and a

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
@@ -15,8 +14,7 @@ from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.extent import directions_for, supports
 from standoff.sweep.proof.nesting import sense_of
 from standoff.sweep.subjects.shaped_body import ShapedBody
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 SIDE = 7
 """Directions along each side of a cube, as of `extent`: 294 in all, some 13 degrees apart, the axes

@@ -17,7 +17,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.impact.moment import Box
@@ -28,8 +27,7 @@ from standoff.sweep.proof.extent import farthest
 from standoff.sweep.proof.growth import Growth
 from standoff.sweep.proof.tolerances import SQUARE_ROUNDINGS
 from standoff.sweep.subjects.shaped_body import ShapedBody
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 EPS = float(np.finfo(np.float64).eps)
 

@@ -23,7 +23,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
 from standoff.sweep.parameters import Parameter, in_ranges
@@ -40,9 +39,7 @@ from standoff.sweep.subjects.shaped_body import answered_shapes, some_poses
 from standoff.tracking.answers import AnswerArrays, proven
 from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.many_distances import fit_poses
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class Asked(AnswerArrays):
@@ -68,7 +65,7 @@ class Asked(AnswerArrays):
         return self.rows
 
     @property
-    def counts(self) -> Whole:
+    def counts(self) -> Ints:
         """How many they are, and how many of them are not proven."""
         doubtful = int(np.count_nonzero(~proven(self.rows[:, K.STATUS])))
         return np.array([len(self.rows), doubtful])
@@ -130,7 +127,7 @@ class PairBox(ParameterBox):
         told, moved, asked = self.told(cells)
         return self.decided(cells, moved, told, asked)
 
-    def told(self, cells: Cells) -> tuple[Told, Array, Whole]:
+    def told(self, cells: Cells) -> tuple[Told, Array, Ints]:
         """Return what is told of cells, by a query in the middle where no ball is enough; how far
         points move in them; and the number of queries, and of those that are not proven."""
         n = len(cells.place)
@@ -167,7 +164,7 @@ class PairBox(ParameterBox):
         poses = fit_poses(*own, poses)
         return Asked(*answered_shapes(own, self.shaped, numbers, poses, None), poses)
 
-    def by_smallest(self, cells: Cells, found: Asked, told: Told) -> tuple[Told, Whole]:
+    def by_smallest(self, cells: Cells, found: Asked, told: Told) -> tuple[Told, Ints]:
         """Return what is told with bounds from above that hold for all shapes in the cells; and the
         number of queries, and of those that are not proven."""
         whole, _ = self.moved(self.half(cells))

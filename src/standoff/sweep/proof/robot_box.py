@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.robots.limits import check_limits
 from standoff.robots.motions import Frames
@@ -18,10 +17,7 @@ from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof.box import Looked, ParameterBox, Told
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.subjects.robot import RobotSubject
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+from standoff.typing import Array, Bools, Ints
 
 SEEN_TOGETHER = 8192
 """Pairs in cells whose bounding boxes are seen at once: some 10 MB."""
@@ -69,7 +65,7 @@ class RobotBox(ParameterBox):
     def pairs(self) -> int:
         return self.sight.pairs
 
-    def _seen(self, cells: Cells) -> tuple[Array, Frames, Whole, Whole, Middle]:
+    def _seen(self, cells: Cells) -> tuple[Array, Frames, Ints, Ints, Middle]:
         """Configurations in the middles with their frames; of each pair that is left in a cell, the
         cell, the pair, and how far it can move."""
         q = self.subject.configurations(self.parameters, self.numbers(cells))
@@ -119,8 +115,8 @@ class RobotBox(ParameterBox):
         return self.decided(cells, moved, told, asked)._replace(known=known)
 
     def _asked(
-        self, worth: Bools, pairs: Whole, q: Array, frames: Frames, at: Whole, boxed: Apart
-    ) -> tuple[Whole, Apart]:
+        self, worth: Bools, pairs: Ints, q: Array, frames: Frames, at: Ints, boxed: Apart
+    ) -> tuple[Ints, Apart]:
         """Which pairs are asked, and what they answer: those that are worth it, and in a cell whose
         middle is too near, all that may be nearer still."""
         ask = np.flatnonzero(worth)
@@ -135,7 +131,7 @@ class RobotBox(ParameterBox):
         both = (np.concatenate(each) for each in zip(apart, rest, strict=True))
         return np.concatenate([ask, more]), Apart._make(both)
 
-    def _worth(self, pairs: Whole, middle: Middle, boxed: Apart, bound: Array) -> Bools:
+    def _worth(self, pairs: Ints, middle: Middle, boxed: Apart, bound: Array) -> Bools:
         """Is a pair asked? Not where its boxes prove it, nor where a query would hardly prove
         anything: as far as can be seen the middle is too near for that, and surely too far for a
         violation of the whole cell."""

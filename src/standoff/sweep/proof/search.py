@@ -15,20 +15,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.sweep.proof.box import Looked, ParameterBox
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.summary import Kind, Places, ProofSummary
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Ints
 
 TOGETHER = 1 << 18
 """Cells of one level that are gone on with together; more of them are parted, each part with its
 part of the queries. A cell takes some 200 B."""
 
-Recorded = Callable[[Cells, Whole, Whole], None]
+Recorded = Callable[[Cells, Ints, Ints], None]
 
 
 def search(
@@ -106,7 +103,7 @@ class _Search:
             least = nearest[[int(looked.distance[nearest].argmin())]]
             found.nearest.add(self._places(cells, looked, least))
 
-    def _places(self, cells: Cells, looked: Looked, which: Whole) -> Places:
+    def _places(self, cells: Cells, looked: Looked, which: Ints) -> Places:
         some = cells.at(which)
         half = some.halves * self.box.width
         return Places(self.box.numbers(some), half, looked.distance[which], looked.lower[which])

@@ -9,12 +9,9 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.robots.proof import Verdict
-
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+from standoff.typing import Array, Ints
 
 
 class Kind(IntEnum):
@@ -115,7 +112,7 @@ class ProofSummary:
         self.counterexamples = Worst(most, columns, "distance")
         self.open = Worst(most, columns, "bound")
 
-    def close(self, levels: Whole, kind: Kind, bound: Array) -> None:
+    def close(self, levels: Ints, kind: Kind, bound: Array) -> None:
         """Count cells of a kind."""
         for level, n in zip(*np.unique(levels, return_counts=True), strict=True):
             self.cells.setdefault(int(level), [0] * len(Kind))[kind] += int(n)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
@@ -16,9 +15,8 @@ from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.mover import PlacedBody
 from standoff.sweep.proof.pair_box import PairBox
 from standoff.sweep.subjects.world import SceneWorld
+from standoff.typing import Array
 from standoff.world.pieces import PieceUnion
-
-Array = NDArray[np.float64]
 
 
 class WorldBox(ParameterBox):

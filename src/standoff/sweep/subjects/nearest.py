@@ -7,19 +7,17 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.motion import Pose
 from standoff.motion.vectors import pose_row
 from standoff.sweep.rows import NO_PAIR, Rows
 from standoff.tracking.answers import PROVEN
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.world import World
 from standoff.world.answer import WorldAnswer
 from standoff.world.pieces import PieceUnion
 from standoff.world.solid_answer import SolidPairAnswer
-
-Array = NDArray[np.float64]
 
 
 class Row(NamedTuple):

@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
@@ -22,8 +21,7 @@ from standoff.sweep.subjects.subject import Alone
 from standoff.sweep.tolerances import SOUND_HOME
 from standoff.tracking.distance_arrays import Distances
 from standoff.tracking.many_distances import answered_rows, fit_poses
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
 from standoff.robots.joints import SINGLE, JointKind
@@ -19,9 +18,8 @@ from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.nearest import drawn_answer, names_of, nearest_of, rows_of
 from standoff.sweep.subjects.shapes import digest_of_arrays, digest_of_shape
 from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.typing import Array
 from standoff.world.answer import WorldAnswer
-
-Array = NDArray[np.float64]
 
 ONE_NUMBER = (*SINGLE, JointKind.CONTINUOUS)
 """Joints that a parameter can move."""

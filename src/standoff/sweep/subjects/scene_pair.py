@@ -6,17 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.motion import Pose
 from standoff.scene import Scene
 from standoff.sweep.parameters import Parameter, moved
 from standoff.sweep.subjects.shapes import digest_of_shape
 from standoff.sweep.subjects.subject import Subject
+from standoff.typing import Array
 from standoff.world.shapes import Shape
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.swept import with_radius
@@ -19,8 +18,7 @@ from standoff.scene.reader import Table
 from standoff.scene.shapes import NUMBERS, SHAPES, read_body, swept_keys
 from standoff.sweep.parameters import Parameter, columns_of
 from standoff.tracking.many_distances import rows_at_made_poses
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 BODIES_KEPT = 4096
 """Bodies of a changing shape that are kept at hand: some 8 kB each of ellipsoids, and more of

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.solids.answer import SolidProximity
 from standoff.sweep.parameters import Parameter
@@ -16,8 +15,7 @@ from standoff.sweep.subjects.scene_pair import ScenePair
 from standoff.sweep.subjects.subject import Alone
 from standoff.tracking import distance
 from standoff.tracking.status import Status
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

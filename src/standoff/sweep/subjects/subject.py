@@ -6,13 +6,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.rows import Rows
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 class Alone(NamedTuple):

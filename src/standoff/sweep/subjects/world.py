@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.motion import Pose
 from standoff.scene import Scene
@@ -16,11 +15,10 @@ from standoff.sweep.rows import Rows
 from standoff.sweep.subjects.nearest import drawn_answer, names_of, nearest_of, rows_of
 from standoff.sweep.subjects.shapes import digest_of_shape
 from standoff.sweep.subjects.subject import Alone, Subject
+from standoff.typing import Array
 from standoff.wording import counted
 from standoff.world import World
 from standoff.world.answer import WorldAnswer
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.entries import derivatives as kernels
@@ -11,8 +10,7 @@ from standoff.motion import Pose
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.reached import packed
 from standoff.tracking.rows import motion_row
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 def equal_normals(

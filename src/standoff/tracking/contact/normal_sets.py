@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
@@ -14,9 +13,7 @@ from standoff.kernels.tolerances import AROUND, SAME_WIDTH
 from standoff.motion import Pose
 from standoff.tracking.support import support_point
 from standoff.tracking.tolerances import LEAST_WIDTH_ANGLE
-
-Array = NDArray[np.float64]
-
+from standoff.typing import Array
 
 DIRECTIONS = 24
 """Directions around the normal that are tried first."""

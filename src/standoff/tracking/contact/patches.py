@@ -19,8 +19,7 @@ from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.reached import packed
 from standoff.tracking.rows import Answer
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 N_POSES = K.TWIST_A - K.POSE_A
 """Numbers of both poses in a row of a motion."""

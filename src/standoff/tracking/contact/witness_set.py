@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from standoff.bodies.body import Body
 from standoff.bodies.support_sets import support_set
@@ -22,8 +21,7 @@ from standoff.tracking.contact.equal_depths import equal_normals
 from standoff.tracking.contact.normal_sets import normal_dimension
 from standoff.tracking.rows import Answer
 from standoff.tracking.tolerances import LEAST_EXTENT, LINE_RANK, LOOSENESS
-
-Array = NDArray[np.float64]
+from standoff.typing import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from standoff.bodies import Body, shapes
 from standoff.checks.numbers import magnitude
 from standoff.geometry.curves import RationalBezier
 from standoff.geometry.nurbs import BezierPatch
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 PLANAR_CONTROL = (
     ((1.0, 0.0), (0.775, 0.645), (0.175, 1.005), (-0.5, 0.9)),

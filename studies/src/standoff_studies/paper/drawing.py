@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import Feature
+from standoff.typing import Array
 from standoff_studies.paper import style
 
 Spot = tuple[float, float]

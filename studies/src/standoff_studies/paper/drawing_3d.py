@@ -16,8 +16,8 @@ from matplotlib.colors import to_rgb
 from numpy.typing import ArrayLike
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff_studies.paper import style
 
 PALE = ("#9FD3F2", "#F7D08A", "#7FD1B9", "#F4B8A0", "#E3B7D0", "#C9C9C9")

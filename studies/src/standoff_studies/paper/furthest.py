@@ -20,12 +20,12 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.geometry import ConicArc
-from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import draw_planar_body, show_plane
 from standoff_studies.paper.figure import NOTHING, Artwork, Statement, measured_by

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import standoff as so
-from standoff.geometry.validation import Array
 from standoff.tracking.calls import run
 from standoff.tracking.inputs import flat_pose
+from standoff.typing import Array
 
 Placement = tuple[so.Pose, so.Twist]
 Motion = Callable[[float], tuple[Placement, Placement]]

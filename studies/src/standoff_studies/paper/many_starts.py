@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Path, Pose
 from standoff.tracking import Proximity, Tracker, TrackerState, pair_system
 from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.rows import poses_of, twists_of
+from standoff.typing import Array
 
 AT_SIDE = 1e-9
 """Parameters nearer to 0 or 1 than this are at a side: the zeroing holds them there exactly."""

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import show_plane
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement

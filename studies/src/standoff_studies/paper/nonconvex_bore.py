@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 import standoff as so
 from standoff.geometry import ConicArc
-from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
 from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper.many_starts import begun, motion_along, stepped
 from standoff_studies.paper.pair_simulation import REST
 

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Path
 from standoff.solids import SolidTracker
 from standoff.tracking import Tracker, distance
 from standoff.tracking.frame_buffer import FrameBuffer
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper.many_starts import begun, motion_along
 from standoff_studies.paper.nonconvex_scene import (
     BALLS,

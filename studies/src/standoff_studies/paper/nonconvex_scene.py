@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from standoff.bodies import Body, Edge, Face
 from standoff.geometry import ConicArc, Plane, Surface
 from standoff.geometry.quadrics import sphere_atlas
-from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Path, Pose, Spiral, Twist
 from standoff.recording.times import even_times
 from standoff.solids import Solid
+from standoff.typing import Array
 
 RADIUS, HALF = 1.0, 0.6
 """Of the balls, and half of what the middles of two that are side by side are apart [length]."""

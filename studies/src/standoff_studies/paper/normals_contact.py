@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.normals_study import (
     AXES_A,
     AXES_B,

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.normals_system import (
     evaluate_contact,
     evaluate_normals,

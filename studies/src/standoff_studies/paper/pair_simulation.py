@@ -10,13 +10,13 @@ import numpy as np
 
 from standoff.automaton import Visit
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Path, Pose
 from standoff.recording import RecordedEvent, Recording, track
 from standoff.recording.times import even_times
 from standoff.recording.track import track_along
 from standoff.tracking import Proximity, Tracker, TrackerState, distance
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.held_features import CONTINUOUS, SHARED, greatest_growth
 from standoff_studies.paper.law_words import law_words

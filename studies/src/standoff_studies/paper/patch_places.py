@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.recording import Recording
 from standoff.tracking import Feature
+from standoff.typing import Array
 
 FeaturePlace = tuple[Feature, Array]
 """A feature, and the parameters of a point on it."""

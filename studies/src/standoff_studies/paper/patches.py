@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 import standoff as so
 from standoff.bodies import Body
 from standoff.geometry import BezierPatch
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import PairSystem, Proximity
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement

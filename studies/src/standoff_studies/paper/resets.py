@@ -15,11 +15,11 @@ from matplotlib.axes import Axes
 from scipy.optimize import brentq
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Path
 from standoff.recording import RecordedEvent, Recording
 from standoff.tracking import Feature, Tracker, pair_system
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import HYBRID, Statement, own_statement
 from standoff_studies.paper.patch_places import BothPlaces, FeaturePlace, places_at, short

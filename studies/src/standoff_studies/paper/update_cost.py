@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.figure import Figure
 
-from standoff.geometry.validation import Array
 from standoff.tracking.pair_system import PairSystem, PairSystems
 from standoff.tracking.rows import poses_of, twists_of
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, own_statement
 from standoff_studies.paper.many_starts import motion_along

@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import standoff as so
-from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement

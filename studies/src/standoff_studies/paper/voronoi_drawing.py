@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from standoff.bodies.voronoi import VoronoiRegions
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import placed
 from standoff_studies.paper.drawing_3d import View, posed

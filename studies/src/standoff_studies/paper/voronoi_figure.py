@@ -14,9 +14,9 @@ from standoff.bodies import Body, shapes
 from standoff.bodies.features import Feature
 from standoff.bodies.voronoi import VoronoiRegions, voronoi_regions
 from standoff.geometry import ConicArc, Line
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking import distance
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches, planar_body
 from standoff_studies.paper.drawing import curve_points, draw_planar_body, short_name

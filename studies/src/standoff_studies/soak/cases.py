@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PredictorCorrector, law_of_facts
+from standoff.typing import Array
 from standoff_studies.soak.directions import shift_into
 from standoff_studies.soak.motions import Frames, Motion, Path, draw_path, random_direction, stream
 from standoff_studies.soak.placing import heights

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.pair.certified import CERTIFIED
 from standoff.kernels.state.arrays import N_MOTION
 from standoff.kernels.tolerances import BLUR, DEPTH_PROOF, EPS, START_GAP, TOUCHING
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff_studies.oracles import HalfSpace, lengths
 from standoff_studies.soak import any_places as P
 from standoff_studies.soak.checks import BLURRED, BOX_CENTRE, LEAST, ON_BODY, ROUNDOFF

@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import BLUR
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff_studies.oracles import HalfSpace, dot, lengths
 from standoff_studies.oracles.shape import TINY
 from standoff_studies.soak.directions import least_depths

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.placing import heights
 from standoff_studies.soak.shapes import Made

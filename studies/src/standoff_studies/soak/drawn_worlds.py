@@ -16,7 +16,7 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.errors import BodyError
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.soak.cases import drawer_of
 from standoff_studies.soak.known_gaps import lattice_drawer, scaled
 from standoff_studies.soak.motions import random_rotation, stream

@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.checks.numbers import whole_number
-from standoff.geometry.validation import Array
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
 from standoff.tracking.block import Block
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 from standoff.version import __version__
 from standoff_studies.soak.adversary import Breach, run_round
 from standoff_studies.soak.cases import Case

@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.soak import blocks
 
 BLOCK = 500

@@ -16,7 +16,7 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.errors import BodyError
 from standoff.geometry import Line
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies import oracles
 from standoff_studies.soak.lattice import PER_LENGTH, signed_distance, whole
 from standoff_studies.soak.motions import random_direction, random_rotation, stream

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.soak.shapes import Made, Shape, made
 
 Ints = NDArray[np.int64]

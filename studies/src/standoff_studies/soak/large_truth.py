@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 import standoff as so
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.oracles import lengths
 from standoff_studies.soak.checks import PROVEN, ROUNDOFF
 from standoff_studies.soak.placing import heights

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.state import arrays as K
+from standoff.typing import Array
 from standoff_studies.oracles import dot, lengths
 from standoff_studies.soak.motions import Frames
 from standoff_studies.soak.shapes import Made

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 Rng = np.random.Generator
 

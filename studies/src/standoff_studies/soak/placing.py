@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.oracles import HalfSpace, Region, Swept, dot
 from standoff_studies.soak.shapes import Made
 

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
@@ -16,6 +15,7 @@ from standoff.tracking.block import Block
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 from standoff_studies.soak.cases import Case
 from standoff_studies.soak.checks import (
     GLOBAL,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.bodies.body import Body
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies import oracles
 from standoff_studies.kinds import TWINS
 

@@ -24,9 +24,9 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.geometry.curves import Line
-from standoff.geometry.validation import Array
 from standoff.solids import PlanarSolid, Solid, SolidProximity, distance
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff_studies.soak import blocks, flush_depths, solid_parts
 
 BLOCK = 25

@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
@@ -23,6 +22,7 @@ from standoff.tracking.law_options import Law
 from standoff.tracking.laws import OptionsConflict, PaperLaw, law_of_facts
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
+from standoff.typing import Array
 from standoff_studies.oracles import HalfSpace, Region, Swept, lengths
 from standoff_studies.soak import any_places as P
 from standoff_studies.soak.certificate_checks import Miss, ask_all, worst

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.geometry.validation import Array
 from standoff.kernels.world.pairs import KEPT_BEYOND
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff.world.answer import WorldAnswer
 from standoff.world.state import WorldState
 from standoff_studies.soak.checks import PROVEN

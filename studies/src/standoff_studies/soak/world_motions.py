@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 Rng = np.random.Generator
 

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.geometry.validation import Array
 from standoff.kernels.body import layout as L
 from standoff.kernels.tolerances import BLUR
 from standoff.tracking.laws import DEFAULT_LAW
 from standoff.tracking.status import Status
+from standoff.typing import Array
 from standoff_studies.oracles import HalfSpace, Shape, lengths
 from standoff_studies.soak.checks import BLURRED, ROUNDOFF
 from standoff_studies.soak.drawn_worlds import Chapter, Part

@@ -15,7 +15,7 @@ from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas.compiled import Formula
 from standoff.geometry.interval_vectors import mapped
 from standoff.geometry.intervals import TINY, Interval
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Boxes evaluated for one axis.
 MOST_BOXES = 8_192

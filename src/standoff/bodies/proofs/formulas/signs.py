@@ -12,7 +12,7 @@ from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas.enclosures import Enclosure, mean_value
 from standoff.geometry.formulas.expressions import sympy_module
 from standoff.geometry.intervals import Interval
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 FIRST_GRID = 8
 CHUNK = 1024

@@ -28,7 +28,7 @@ from standoff.geometry.formulas.series_program import SeriesProgram
 from standoff.geometry.interval_vectors import stacked
 from standoff.geometry.intervals import Interval, interval
 from standoff.geometry.series import Series, powers
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 
 # Order of the series of x: those of its second derivatives are of two less, and of four less at a
 # smooth pole. Higher orders take fewer boxes and more time.

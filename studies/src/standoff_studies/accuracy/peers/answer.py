@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.accuracy.solids import Solid
 
 Pose = tuple[Array, Array]

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.accuracy.peers.answer import (
     Peer,
     PeerAnswer,

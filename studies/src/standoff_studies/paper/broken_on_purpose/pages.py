@@ -25,11 +25,11 @@ from standoff.automaton.graph import automaton
 from standoff.automaton.text import automaton_text
 from standoff.devices import Trace
 from standoff.geometry import ellipsoid_patches
-from standoff.geometry.validation import Array
 from standoff.kernels.pair import system
 from standoff.motion import Pose
 from standoff.servo import Servo
 from standoff.solids import SolidTracker
+from standoff.typing import Array
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.furthest import place_at
 from standoff_studies.paper.nonconvex_scene import BALLS, chain, truth

@@ -14,9 +14,9 @@ from scipy.ndimage import label
 
 import standoff as so
 from standoff.control.basin import Basin, basin
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking.places import PlaceLike
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import bodies as ellipsoids
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement

@@ -11,10 +11,10 @@ import standoff as so
 from standoff.bodies import Body
 from standoff.control import growth_factor, sampled_roots, stability_limit
 from standoff.control.growth import Complex
-from standoff.geometry.validation import Array
 from standoff.kernels.paper.integrators import NAMES
 from standoff.motion import Pose, Twist
 from standoff.tracking import feedback
+from standoff.typing import Array
 
 STEP = 1e-3
 """Frame time [s]."""

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 
 import standoff as so
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.tracking import feedback
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.law_words import law_words

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from standoff.control import growth_factor, stability_limit
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import arrival, decays, loops
 from standoff_studies.paper.control.lag import FRAMES, PAIRS, Lag, measured_lags

@@ -10,9 +10,9 @@ from scipy.spatial.transform import Rotation
 
 import standoff as so
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.recording import Recording, track
+from standoff.typing import Array
 from standoff_studies.paper.pair_simulation import REST
 
 DT = 1e-3

@@ -14,8 +14,8 @@ import standoff as so
 from standoff.bodies import Body
 from standoff.control.basin import Basin, basin
 from standoff.control.lyapunov import LyapunovLevels, lyapunov_level
-from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.control.parameter_errors import (

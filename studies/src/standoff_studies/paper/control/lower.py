@@ -16,8 +16,8 @@ from standoff.bodies import Body
 from standoff.control import growth_factor, lyapunov_level, step_growth
 from standoff.errors import StandoffError
 from standoff.geometry import ConicArc
-from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Pose, Twist
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.gains import draw_parts
 from standoff_studies.paper.control.lag import DT, Case, random_case

@@ -21,9 +21,9 @@ import standoff as so
 from standoff.bodies import Body
 from standoff.control.lyapunov import LyapunovLevels, RestSystem
 from standoff.control.tolerances import DIRECTION_TOLERANCE
-from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Pose, Twist
 from standoff.tracking.places import PlaceLike
+from standoff.typing import Array
 
 PACE = 0.02
 """Steps along a ray, in parameters, whose ranges are about 1."""

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from standoff.control import growth_factor, sampled_roots, stability_limit
-from standoff.geometry.validation import Array
 from standoff.tracking import feedback
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.control.decay import DAMPINGS, PROPORTIONAL, loops
 from standoff_studies.paper.control.gains import AGREE, worst_loop

@@ -13,7 +13,7 @@ from standoff.bodies.topology import Face
 from standoff.geometry.curves import ConicArc, Curve
 from standoff.geometry.nurbs import BezierPatch
 from standoff.geometry.pcurves import Pcurve
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.bodies import lens_of_patches
 
 RADIUS, OFFSET = 1.0, 0.45

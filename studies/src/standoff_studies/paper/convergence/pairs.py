@@ -10,9 +10,9 @@ from itertools import product
 import numpy as np
 
 from standoff.bodies import Body, shapes
-from standoff.geometry.validation import Array
 from standoff.motion import ConstantTwist, Fixed, Path, Pose, Spiral, Twist
 from standoff.tracking import distance
+from standoff.typing import Array
 from standoff_studies.paper.bodies import leaf, lens_of_patches, planar_body
 from standoff_studies.paper.convergence.lenses import PARAMETRISATIONS, Lens, lens
 from standoff_studies.paper.pair_simulation import AT_POINT, Place, Start

@@ -10,10 +10,10 @@ import numpy as np
 
 from standoff.bodies import shapes
 from standoff.geometry import Torus
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.solids import Solid, distance
 from standoff.tracking.inputs import flat_pose
+from standoff.typing import Array
 from standoff_studies.paper.convergence.ring_law import (
     COVARIANT,
     GRADIENT,

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies.features import Feature, feature_of
-from standoff.geometry.validation import Array
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed, Path, Pose
@@ -18,6 +17,7 @@ from standoff.recording.times import even_times
 from standoff.tracking import Tracker, pair_system
 from standoff.tracking.calls import run
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper.convergence.pairs import Pair
 from standoff_studies.paper.many_starts import LEFT, begun, motion_along
 from standoff_studies.paper.pair_simulation import REST

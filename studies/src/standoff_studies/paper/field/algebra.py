@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import eig
 from scipy.signal import convolve2d
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.field.newton import Pair, Spots, newton
 from standoff_studies.paper.field.shells import Shell, Spot
 

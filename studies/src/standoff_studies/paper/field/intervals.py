@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from standoff.geometry.boxes import Boxes
 from standoff.geometry.intervals import Interval
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.field.newton import CONVERGED, Pair, Spots, hessian_of, slopes_of
 from standoff_studies.paper.field.shells import VECTORS, Shell, Spot, held
 from standoff_studies.paper.field.support import Lost

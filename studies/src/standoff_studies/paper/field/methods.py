@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.kernels.tolerances import CLOSEST_SAMPLES
 from standoff.motion import Fixed
 from standoff.tracking import Proximity, Tracker
 from standoff.tracking.laws import PaperLaw, PredictorCorrector
+from standoff.typing import Array
 from standoff_studies.paper.convergence.starts import LEAST_FRAMES, PATIENCE
 from standoff_studies.paper.field import algebra, intervals, newton, polyhedra, support
 from standoff_studies.paper.field.shells import Spot

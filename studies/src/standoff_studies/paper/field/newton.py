@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.field.shells import Jet, Shell, Spot, held
 from standoff_studies.paper.field.support import Lost
 

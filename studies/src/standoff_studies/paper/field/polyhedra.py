@@ -10,8 +10,8 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.typing import Array
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.field.shells import Shell, Spot
 from standoff_studies.paper.field.support import Lost, nearest

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
+from standoff.typing import Array
 
 SAME = 1e-7
 """Points of two patches nearer than this are one [length]: they are sewn to far less, and the sides

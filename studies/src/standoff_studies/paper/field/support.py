@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.field.shells import Jet, Shell, Spot, held
 
 CLIMBED = 1e-9

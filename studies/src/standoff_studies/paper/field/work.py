@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.motion import Pose, Twist
 from standoff.recording import track
 from standoff.tracking import Feature, Proximity, Tracker, distance
+from standoff.typing import Array
 from standoff_studies.paper.convergence.pairs import DRAWN_PAIRS, Pair, pair, set_apart
 from standoff_studies.paper.field.shells import Shell, Spot
 from standoff_studies.paper.pair_simulation import REST, Place, Start

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from standoff.bodies.features import Feature, feature_of
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import View
 from standoff_studies.paper.figure import Artwork

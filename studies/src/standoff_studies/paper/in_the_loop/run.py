@@ -12,9 +12,9 @@ from scipy.interpolate import CubicSpline
 import standoff as so
 from standoff import simulation as sim
 from standoff.bodies import Body, shapes
-from standoff.geometry.validation import Array
 from standoff.motion import Pose
 from standoff.tracking.rows import AnswerRows
+from standoff.typing import Array
 from standoff_studies.paper.bodies import lens_of_patches
 
 RADIUS, OFFSET = 0.05, 0.0225

@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff import simulation as sim
 from standoff.bodies.features import feature_of
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.figure import Statement, measured_by, own_statement
 from standoff_studies.paper.in_the_loop.run import (
     BALL,

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.tracking import Tracker
+from standoff.typing import Array
 from standoff_studies.paper.realisations.run import MISS, RIGHT, Trace, exact, trace, true_errors
 
 REALISATIONS = ("integrated", "evaluated")

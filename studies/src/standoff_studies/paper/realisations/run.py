@@ -8,12 +8,12 @@ from functools import cache
 import numpy as np
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Screw, Twist
 from standoff.tracking import Feature, Tracker, TrackerState, distance, pair_system
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.rows import poses_of, twists_of
+from standoff.typing import Array
 from standoff_studies.paper.many_starts import motion_along, stepped
 from standoff_studies.paper.simulation_a.setting import vault
 

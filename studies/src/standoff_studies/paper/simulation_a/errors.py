@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork
 from standoff_studies.paper.simulation_a import gains

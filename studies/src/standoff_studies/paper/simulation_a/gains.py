@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.control import growth_factor
-from standoff.geometry.validation import Array
 from standoff.tracking import Tracker, distance, max_gain
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.raw_law import Trials, growth_of_small_errors, try_all
 from standoff_studies.paper.simulation_a.run import (

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.geometry.validation import Array
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.motion import Fixed
 from standoff.tracking import Tracker
+from standoff.typing import Array
 from standoff_studies.paper.many_starts import begun, motion_along, stepped
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.run import (

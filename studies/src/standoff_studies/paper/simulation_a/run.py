@@ -7,7 +7,6 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from standoff.geometry.validation import Array
 from standoff.motion import Path
 from standoff.recording import Recording
 from standoff.recording.track import track_along
@@ -16,6 +15,7 @@ from standoff.tracking.inputs import flat_pose, flat_twist
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.pair_system import PairSystems
 from standoff.tracking.rows import Counts
+from standoff.typing import Array
 from standoff_studies.paper.many_starts import begun
 from standoff_studies.paper.pair_simulation import REST
 from standoff_studies.paper.simulation_a.setting import (

@@ -9,9 +9,9 @@ import numpy as np
 
 from standoff.bodies import Body, shapes
 from standoff.geometry.nurbs import BezierPatch
-from standoff.geometry.validation import Array
 from standoff.motion import Helix
 from standoff.tracking import Feature
+from standoff.typing import Array
 
 STEP = 1e-3
 """Step of the simulation [s]: the paper's 1 kHz."""

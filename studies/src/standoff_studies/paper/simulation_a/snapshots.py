@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from standoff.geometry.validation import Array
 from standoff.tracking import distance
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import PALE, View, patch_points
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import MedialBranch, VoronoiRegions
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper.drawing import curve_points
 
 PIECES = 2000

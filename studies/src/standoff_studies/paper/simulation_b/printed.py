@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from standoff.bodies import Body, shapes
 from standoff.bodies.voronoi import VoronoiRegions
-from standoff.geometry.validation import Array
 from standoff.motion import Spiral
 from standoff.points import PointEvent, PointVisit
 from standoff.points.planar_boundary import PlanarBoundary
@@ -22,6 +21,7 @@ from standoff.recording import RecordedEvent, Recording
 from standoff.recording.track import track_along
 from standoff.tracking import Feature, Tracker, TrackerState
 from standoff.tracking.laws import PaperLaw
+from standoff.typing import Array
 from standoff_studies.paper.law_words import law_words
 from standoff_studies.paper.many_starts import begun
 from standoff_studies.paper.pair_simulation import AT_POINT, REST

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from standoff.bodies import Body
 from standoff.bodies.voronoi import VoronoiRegions, voronoi_regions
-from standoff.geometry.validation import Array
 from standoff.motion import Spiral
 from standoff.points import PointEvent, PointRecording, PointTracker, record_point
 from standoff.tracking import Feature
+from standoff.typing import Array
 from standoff_studies.paper.bodies import planar_body
 from standoff_studies.paper.drawing import curve_points
 from standoff_studies.paper.law_words import law_words

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import (
     draw_feature,

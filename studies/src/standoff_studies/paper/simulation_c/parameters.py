@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.optimize import isotonic_regression
 
 from standoff.automaton import Visit
-from standoff.geometry.validation import Array
 from standoff.recording import Recording
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import short_name
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement

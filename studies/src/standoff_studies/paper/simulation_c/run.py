@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Path, Pose, Spiral, Twist
 from standoff.tracking import Feature
+from standoff.typing import Array
 from standoff_studies.paper.bodies import leaf, planar_body
 from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import REST, Simulation, ends_of, random_starts

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from standoff.automaton import Automaton, Transition
 from standoff.bodies import Boundary
 from standoff.bodies.tessellation import edge_lines
-from standoff.geometry.validation import Array
 from standoff.tracking import Feature, distance
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing import draw_arrow
 from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by

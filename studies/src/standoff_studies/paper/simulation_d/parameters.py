@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from standoff.geometry.validation import Array
 from standoff.recording import Recording
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.keys import key_below, key_fill, key_line

@@ -9,9 +9,9 @@ import numpy as np
 
 from standoff.automaton import Visit
 from standoff.bodies import shapes
-from standoff.geometry.validation import Array
 from standoff.motion import Fixed, Helix
 from standoff.recording import Recording
+from standoff.typing import Array
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import (

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from standoff.bodies import Body
 from standoff.bodies.tessellation import edge_lines
 from standoff.bodies.voronoi import voronoi_regions
-from standoff.geometry.validation import Array
 from standoff.tracking import Feature
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.drawing_3d import LOOKS, View
 from standoff_studies.paper.figure import Animation, Artwork, Statement, measured_by, own_statement

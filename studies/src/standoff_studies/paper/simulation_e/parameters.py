@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from standoff.geometry.validation import Array
+from standoff.typing import Array
 from standoff_studies.paper import style
 from standoff_studies.paper.figure import HYBRID, Artwork, Statement, measured_by, own_statement
 from standoff_studies.paper.held_features import growth

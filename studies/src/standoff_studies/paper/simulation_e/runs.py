@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from standoff.automaton import Visit
 from standoff.bodies import Body
-from standoff.geometry.validation import Array
 from standoff.motion import Carried, ConstantTwist, Helix, Pose, Twist
 from standoff.recording import Recording
+from standoff.typing import Array
 from standoff_studies.paper.bodies import lens_of_patches
 from standoff_studies.paper.many_starts import Ends
 from standoff_studies.paper.pair_simulation import (
