@@ -45,7 +45,7 @@ HALVES = (
 FRONT = (
     *("README.md", "docs/index.md", "docs/benchmarks.md", "docs/boundaries.md", "CITATION.cff"),
     *("docs/coming-from.md", "docs/ten-tasks.md", "pyproject.toml", "src/standoff/__init__.py"),
-    "src/standoff/cli/overview.py",
+    "src/standoff/cli/arguments.py",
 )
 OUTDATED = (
     *("curved convex", "one pair at a time", "two convex bodies with", "choose the pairs yourself"),

@@ -7,8 +7,13 @@ import sympy
 from shares import only
 from standoff.bodies.proofs import interval
 from standoff.bodies.proofs.formulas import forms, normals
-from standoff.bodies.proofs.formulas.poles import poles_of
-from standoff.bodies.proofs.formulas.taylor import Expansion, TaylorBounds, curvature, normal
+from standoff.bodies.proofs.formulas.taylor import (
+    Expansion,
+    TaylorBounds,
+    curvature,
+    normal,
+    poles_of,
+)
 from standoff.geometry.boxes import Boxes, grid
 from standoff.geometry.formulas import FormulaSurface
 from standoff.geometry.formulas.expressions import read_expression

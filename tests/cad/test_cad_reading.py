@@ -143,7 +143,7 @@ QUADRATURES = ("flange", "elbow", "cone", "twisted", "hollow", "drilled tube")
 
 @pytest.mark.parametrize("name", only(["elbow", "twisted"], QUADRATURES))
 def test_the_quadrature_of_faces(name: str) -> None:
-    from standoff.cad.quadrature import face_integrals
+    from standoff.cad.measures import face_integrals
 
     shape = SHAPES[name][0]()
     parts = [face_integrals(f, np.array([1.0, 2.0, 3.0])) for f in made.explored(shape, "face")]

@@ -13,7 +13,7 @@ import pytest
 from matplotlib.image import imread
 
 import standoff as so
-from standoff.cli.body_report import report_rows
+from standoff.cli.check import report_rows
 from standoff.geometry import ellipsoid_patches
 from standoff.scene import load_scene
 

@@ -24,7 +24,7 @@ from mangled import Frames, kinds
 import standoff as so
 from standoff import simulation as sim
 from standoff.devices import Inverse3
-from standoff.devices.inverse3_messages import Cursor, cursor_of, leaped
+from standoff.devices.inverse3 import Cursor, cursor_of, leaped
 from standoff.servo import Servo
 
 MAX_AGE = 0.01

@@ -13,8 +13,7 @@ from mangled import kinds
 
 import standoff as so
 from standoff.devices import Inverse3
-from standoff.devices.inverse3 import _Conversation
-from standoff.devices.inverse3_messages import Cursor, cursor_of, device_ids, force_message
+from standoff.devices.inverse3 import Cursor, _Conversation, cursor_of, device_ids, force_message
 from standoff.errors import DeviceError, StandoffTypeError
 from standoff.servo import Servo
 from standoff.simulation import Fault, Wrench

@@ -13,7 +13,7 @@ import standoff as so
 from draws import draws
 from standoff.errors import StandoffError
 from standoff.robots import MujocoContacts, MujocoSensor
-from standoff.robots.mujoco_mixing import mixed
+from standoff.robots.mujoco_contacts import mixed
 
 FALL = """
 <mujoco><option integrator="implicitfast" timestep="0.001"/><worldbody>

@@ -13,7 +13,7 @@ from robot_models import EXACT, MJCF, drawn, exact_robot, urdf
 
 import standoff as so
 from draws import draws
-from standoff.robots.horizons import Horizons
+from standoff.robots.robot_model import Horizons
 
 mujoco = pytest.importorskip("mujoco")
 pin = pytest.importorskip("pinocchio")

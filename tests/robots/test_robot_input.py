@@ -78,7 +78,7 @@ def test_a_body_for_a_mesh_stands_where_its_file_says() -> None:
 
 def test_the_gap_of_a_hull_is_the_greatest_distance_from_its_mesh() -> None:
     """A cross of two bars: its hull is farthest from it in the notches."""
-    from standoff.robots.hull_gap import hull_gap
+    from standoff.robots.shapes import hull_gap
 
     bars = [(3.0, 1.0, 1.0), (1.0, 3.0, 1.0)]
     corners, triangles = [], []

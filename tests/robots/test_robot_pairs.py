@@ -143,7 +143,7 @@ def test_pairs_of_a_urdf_are_all_but_neighbours_and_the_disabled(name: str) -> N
 )
 def test_links_beyond_a_fixed_joint_are_watched(name: str, more: int) -> None:
     """Pairs of links that are lost where fixed links are merged before neighbours are taken."""
-    from standoff.robots.urdf_pairs import pairs_left_out
+    from standoff.robots.urdf import pairs_left_out
     from standoff.robots.urdf_xml import read_tree
 
     file = {"tiago": "tiago_description/robots/tiago.urdf", "pr2": "pr2_description/urdf/pr2.urdf"}

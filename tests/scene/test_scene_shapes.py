@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from standoff import Body, shapes
 from standoff.geometry import ConicArc, FormulaCurve, Line, NurbsCurve, RationalBezier
 from standoff.scene import Scene, SceneError
-from standoff.scene.curves import CURVES
-from standoff.scene.shapes import SHAPES
+from standoff.scene.shapes import CURVES, SHAPES
 
 LoadText = Callable[[str], Scene]
 

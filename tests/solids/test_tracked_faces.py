@@ -11,7 +11,7 @@ import standoff as so
 from families.solid_shapes import bracket, peg, prism, ring
 from standoff.kernels.solids import front_rows as F
 from standoff.solids import Solid, SolidTracker
-from standoff.solids.spatial import local_minima
+from standoff.solids.spatial import distance as cold_query
 from standoff.solids.tracked.front import room_for
 
 Array = np.ndarray
@@ -60,13 +60,13 @@ def test_ties_on_the_same_faces_are_joined_in_compiled_code(
     a, b, poses = sliding(31)[name]
     tracker = SolidTracker(a, b, minima=0.3)
     state = tracker.start(STILL, poses[0])
-    asked, sought = list[float](), local_minima._gap_between
+    asked, sought = list[float](), cold_query._gap_between
 
     def gap(*of: Any) -> float:
         asked.append(sought(*of))
         return asked[-1]
 
-    monkeypatch.setattr(local_minima, "_gap_between", gap)
+    monkeypatch.setattr(cold_query, "_gap_between", gap)
     for pose in poses[1:7]:
         asked.clear()
         state, answer = tracker.step(state, STILL, pose)
@@ -87,7 +87,7 @@ def test_sets_are_those_that_are_linked(n: int, rng: np.random.Generator) -> Non
 
     passes = [(lambda k: odd[:k] == odd[k], are_one), (lambda k: odd[:k] | ~odd[:k], are_one)]
     wanted = [np.flatnonzero(row).tolist() for row in np.unique(reach, axis=0)]
-    assert local_minima._sets(n, passes) == sorted(wanted)
+    assert cold_query._sets(n, passes) == sorted(wanted)
 
 
 def test_a_link_along_a_valley_takes_no_more_than_queries() -> None:

@@ -13,14 +13,15 @@ from scipy.stats.qmc import Sobol
 
 from standoff.errors import StandoffError
 from standoff.sweep import samplers
-from standoff.sweep.permutation import ROUNDS, permuted
 from standoff.sweep.samplers import (
+    ROUNDS,
     SOBOL_BITS,
     GridSampler,
     LatinHypercubeSampler,
     RandomSampler,
     Sampler,
     SobolSampler,
+    permuted,
 )
 
 BIG = 3_000_000_000

@@ -10,12 +10,11 @@ import pytest
 from numpy.typing import NDArray
 
 from standoff.kernels.state import arrays as K
-from standoff.sweep.exact_sum import exact_sum
 from standoff.sweep.job import Job
 from standoff.sweep.keep import Bins, Keep
 from standoff.sweep.rows import Rows
 from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
-from standoff.sweep.summary import Summary
+from standoff.sweep.summary import Summary, exact_sum
 from standoff.tracking.status import BY_NUMBER, Status
 from sweep.conftest import JOB, Make
 

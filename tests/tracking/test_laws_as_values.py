@@ -242,7 +242,7 @@ def test_one_file_beside_the_kernels_knows_their_slots() -> None:
     }
     beside = {name for name in files if not name.startswith("standoff/kernels/")}
     # the C interface hands them on by name, and reads them nowhere
-    assert beside == {"standoff/tracking/options.py", "standoff/c_interface/layout.py"}
+    assert beside == {"standoff/tracking/options.py", "standoff/c_interface/library.py"}
 
 
 @pytest.mark.parametrize(

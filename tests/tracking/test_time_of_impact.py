@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 import standoff as so
 from families import impacts
 from standoff.bodies.body import proven_again
-from standoff.impact.chord import Chords
 from standoff.impact.moment import Box, Moment
+from standoff.impact.search import Chords
 from standoff.motion import (
     Bounded,
     Carried,

@@ -36,7 +36,7 @@ from standoff.view.contact_readout import certified_text, contacts_list, contact
 from standoff.view.served import ServedPage
 from standoff.view.shown_simulation import Instant, Simulated, usual_force
 from standoff.view.simulation_page import SimulationPage
-from standoff.view.simulation_picture import RESTING
+from standoff.view.simulation_stage import RESTING
 from standoff.view.solid_nodes import OVERLAP_COLOUR
 
 LAW = HuntCrossley(stiffness=1e5, damping=5.0, friction=0.3, slip_speed=1e-2, depth=2e-3)

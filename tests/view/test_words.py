@@ -9,7 +9,7 @@ from standoff.bodies.features import Feature
 from standoff.motion import Pose
 from standoff.tracking import Status
 from standoff.tracking.status import OF_SOLIDS
-from standoff.view.plot_scale import PlotScale, scale_of
+from standoff.view.plot import PlotScale, scale_of
 from standoff.view.readout import beside, readout, verdict
 from standoff.view.shown import Shown
 from standoff.view.tolerances import LEVEL_PLOT

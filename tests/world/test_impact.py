@@ -14,8 +14,8 @@ from standoff.impact import ImpactStatus
 from standoff.motion import ConstantTwist, Offset, PoseSamples, Screw
 from standoff.motion.moving import moving
 from standoff.tracking.support import sample_points
+from standoff.world.impact import Follower
 from standoff.world.packed import pieces_of
-from standoff.world.swept import Follower
 
 BALL = so.shapes.sphere(0.5)
 

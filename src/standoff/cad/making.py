@@ -25,7 +25,6 @@ from standoff.bodies.tolerances import JOIN_TOLERANCE, ROUNDOFF
 from standoff.bodies.topology import Face
 from standoff.cad.assembly import PartReport
 from standoff.cad.closed_bounds import sphere_bound
-from standoff.cad.healing import healed
 from standoff.cad.limits import MOST_FACES
 from standoff.cad.measures import (
     area_of,
@@ -38,11 +37,11 @@ from standoff.cad.measures import (
     volume_of,
 )
 from standoff.cad.miss_bounds import miss_bound, side_miss
-from standoff.cad.opencascade import caught_lines, explored, is_kind
+from standoff.cad.opencascade import cast, caught_lines, explored, is_kind
 from standoff.cad.pieces import Pieces, Refused, pieces_of
 from standoff.cad.seams import without_seams
 from standoff.cad.surfaces import kind_of
-from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY
+from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY, SEWN_AT_LEAST
 from standoff.errors import BodyError, StandoffError
 from standoff.kernels.body import layout as L
 from standoff.typing import Array
@@ -313,3 +312,58 @@ def _convex(boundary: Boundary, joined: Joined) -> Body | None:
         return made_body(boundary.name, 0.0, finish(joined, 0.0, None))
     except StandoffError:
         return None
+
+
+# Healing, only where it was asked for: OpenCASCADE's repairs, each counted.
+
+
+def healed(shape: Any) -> tuple[Any, tuple[str, ...]]:
+    """The shape after OpenCASCADE's repairs, and what they changed."""
+    from OCP.ShapeFix import ShapeFix_Shape
+
+    told: list[str] = []
+    before = _counts(shape)
+    loose = tolerance_of(shape)
+    if not is_kind(shape, "solid"):
+        shape, note = _sewn(shape)
+        told += note
+    fixer = ShapeFix_Shape(shape)
+    if fixer.Perform():
+        shape = fixer.Shape()
+        told.append("OpenCASCADE's ShapeFix changed it")
+    solids = list(explored(shape, "solid"))
+    shape = solids[0] if len(solids) == 1 else shape
+    if is_kind(shape, "solid") and volume_of(shape) < 0.0:
+        shape = cast("solid", shape.Reversed())
+        told.append("turned its faces, which were inside out")
+    after = _counts(shape)
+    told += [
+        f"{kind}s: {before[kind]} became {after[kind]}"
+        for kind in before
+        if before[kind] != after[kind]
+    ]
+    if tolerance_of(shape) > loose:
+        told.append(f"greatest tolerance: {loose:.3g} became {tolerance_of(shape):.3g}")
+    return shape, tuple(told)
+
+
+def _counts(shape: Any) -> dict[str, int]:
+    kinds = ("face", "edge", "vertex")
+    return {kind: len({hash(one) for one in explored(shape, kind)}) for kind in kinds}
+
+
+def _sewn(shape: Any) -> tuple[Any, list[str]]:
+    """Faces sewn within their tolerance, and made a solid if they close."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeSolid, BRepBuilderAPI_Sewing
+
+    sewing = BRepBuilderAPI_Sewing(max(tolerance_of(shape), SEWN_AT_LEAST))
+    sewing.Add(shape)
+    sewing.Perform()
+    found = sewing.SewedShape()
+    loose = counted(sewing.NbFreeEdges(), "edge stays", "edges stay")
+    told = [f"sewn: {loose} open, {sewing.NbContigousEdges()} joined"]
+    shells = list(explored(found, "shell"))
+    if len(shells) != 1 or sewing.NbFreeEdges():
+        return found, told
+    maker = BRepBuilderAPI_MakeSolid(shells[0])
+    return cast("solid", maker.Solid()), [*told, "made a solid of its shell"]

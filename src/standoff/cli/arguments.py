@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from inspect import getdoc
 from operator import or_
 from pathlib import Path
 from typing import Annotated, Any
@@ -22,6 +23,7 @@ from tyro.conf import (
 from standoff.cli.added import AddedCommand, added
 from standoff.cli.errors import CommandError
 from standoff.cli.option_groups import (
+    AS_IN_FILE,
     AS_USUAL,
     NO_FILES,
     NO_FLAGS,
@@ -38,16 +40,66 @@ from standoff.cli.option_groups import (
     MeshFlags,
     PaperFlags,
     ReportFlags,
+    RobotFlags,
     SceneFile,
     SolidFlags,
     SpanFlags,
     group,
 )
-from standoff.cli.overview import overview, unknown_command
-from standoff.cli.robot_arguments import CertifyCommand as CertifyCommand
-from standoff.cli.robot_arguments import RobotCommand as RobotCommand
 from standoff.cli.sweep_arguments import SweepCommand as SweepCommand
 from standoff.cli.terminal import tell
+
+# The commands of robot models and their options, as tyro reads them.
+
+
+@dataclass(frozen=True)
+class RobotCommand:
+    """Read a robot model, and find its nearest pair.
+
+    Example: standoff robot panda.urdf --report --hulls
+
+    Exit codes: 0 done, 2 bad input, 3 finished but not certified.
+    """
+
+    model: Annotated[Positional[Path], arg(metavar="MODEL")]
+    """MJCF file (.xml) or URDF file (.urdf)."""
+    report: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Say what became of every geometry, and which pairs are watched."""
+    q: Annotated[str | None, arg(metavar="NUMBERS", help_behavior_hint="")] = None
+    """Configuration, such as '0 0.5 -1'; the model's own zero if not given."""
+    robot: Annotated[RobotFlags, group("robot")] = AS_IN_FILE
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print what was found as JSON."""
+
+
+@dataclass(frozen=True)
+class CertifyCommand:
+    """Prove that a robot on a joint path keeps a clearance at every instant.
+
+    Example: standoff certify examples/robots/arm.xml examples/robots/reach.csv --clearance 0.005
+
+    Exit codes: 0 proven, 1 results could not be written, 2 bad input, 3 not proven.
+    """
+
+    model: Annotated[Positional[Path], arg(metavar="MODEL")]
+    """MJCF file (.xml) or URDF file (.urdf)."""
+    path: Annotated[Positional[Path], arg(metavar="PATH.csv")]
+    """Waypoints, a row each, straight in q between them; docs/certify.md describes the format."""
+    clearance: Annotated[float | None, arg(metavar="LENGTH", help_behavior_hint="")] = None
+    """Distance that every pair must keep, in the model's unit; 0.005 if not given."""
+    obstacles: Annotated[Path | None, arg(metavar="SCENE.toml", help_behavior_hint="")] = None
+    """The bodies of this scene, where they are at its start, are obstacles of the robot."""
+    max_steps: Annotated[int, arg(metavar="NUMBER", help_behavior_hint="")] = 1_000_000
+    """Most intervals of pairs to look at; 1000000 if not given."""
+    output: Annotated[
+        Path | None, arg(aliases=["-o"], metavar="OUT.json", help_behavior_hint="")
+    ] = None
+    """Write the proof with all its steps to this file."""
+    plot: Annotated[Path | None, arg(metavar="OUT.png", help_behavior_hint="")] = None
+    """Draw the proven clearance over time and the proof's steps (.png, .svg or .pdf)."""
+    robot: Annotated[RobotFlags, group("robot")] = AS_IN_FILE
+    json: Annotated[bool, arg(help_behavior_hint="")] = False
+    """Print the proof as JSON, without its steps."""
 
 
 @dataclass(frozen=True)
@@ -435,3 +487,48 @@ def parse(arguments: Sequence[str]) -> Command:
         config=(FlagCreatePairsOff, OmitArgPrefixes),
     )
     return found
+
+
+# What ``standoff --help`` prints: one line a command, and examples.
+
+USAGE = """usage: standoff COMMAND [OPTIONS]
+
+Exact, certified distances of curved bodies, convex or not, still or in motion."""
+
+EXAMPLES = """Examples:
+  standoff distance examples/helix.toml --time 2.5
+  standoff track examples/helix.toml -o run.parquet --plot run.png
+  standoff check 'shape = "box", size = [1, 2, 3]' --plot box.png
+
+standoff COMMAND --help lists a command's options; standoff --version prints the version.
+Exit codes: 0 done, 1 results could not be written, 2 bad input, 3 finished but not certified."""
+
+MARGIN = 12
+"""Width of the column of commands, in characters."""
+
+LONGEST = 60
+"""Longest piece of a misspelt command that is repeated, in characters."""
+
+
+def overview(commands: Mapping[str, type], own: int) -> str:
+    """Return the help of the whole: the library's own commands, which come first, and others."""
+    lines = [f"  {name:<{MARGIN}}{_summary(command)}" for name, command in commands.items()]
+    parts = [USAGE, "\n".join(["Commands:", *lines[:own]])]
+    if lines[own:]:
+        parts.append("\n".join(["Commands of other packages:", *lines[own:]]))
+    return "\n\n".join([*parts, EXAMPLES])
+
+
+def unknown_command(name: str, known: Iterable[str]) -> str:
+    """Return the sentence that refuses a command, with the nearest one that there is."""
+    from standoff.checks.names import nearest
+    from standoff.checks.real_numbers import shown
+
+    likely = nearest(name, known)
+    said = f"did you mean '{likely}'? " if likely is not None else ""
+    return f"unknown command {shown(name, LONGEST)}; {said}standoff --help lists the commands"
+
+
+def _summary(command: type) -> str:
+    """The first line of what a command says of itself."""
+    return (getdoc(command) or "").partition("\n")[0]

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
-from typing import BinaryIO, NamedTuple, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
 
 from standoff.bodies.features import Feature
 from standoff.errors import of_extra
-from standoff.recording.minima_plot import draw_minima
 from standoff.recording.recorded import RecordedFrames
+from standoff.tracking.branches import NONE
 from standoff.typing import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 with of_extra("matplotlib"):
     from matplotlib import colormaps
@@ -372,3 +375,29 @@ def _frame_edges(times: Array) -> Array:
     """Return the times between which each frame is drawn, shape (n + 1,): half way between."""
     middles = 0.5 * (times[1:] + times[:-1])
     return np.concatenate([times[:1], middles, times[-1:]])
+
+
+# Local minima over time, in the picture of a recording.
+
+MINIMA_COLOUR = "#009E73"
+"""Of Okabe and Ito, as those of the picture."""
+
+
+def draw_minima(axes: Axes, times: Array, recording: RecordedFrames) -> None:
+    """Draw each local minimum while it lives, under the distance, which is that of the nearest."""
+    if recording.minima is None:
+        return
+    told, label = recording.minima, "local minima"
+    for key in np.unique(told.key[told.key != NONE]):
+        rows = np.flatnonzero(told.key == key)
+        cuts = np.flatnonzero(np.diff(told.frame[rows]) > 1) + 1
+        for part in np.split(rows, cuts):
+            axes.plot(
+                *(times[told.frame[part]], told.distance[part]),
+                color=MINIMA_COLOUR,
+                linewidth=1.0,
+                marker="." if len(part) == 1 else "",
+                label=label,
+                zorder=1.5,
+            )
+            label = "_"

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from standoff.read_only import KeepsReadOnly
 from standoff.robots.answer import Flag, RobotAnswer
-from standoff.robots.gradients import rows_by_velocity
 from standoff.robots.kinematics import Motion
 from standoff.robots.tolerances import TURN_LOST
 from standoff.shown_names import hides
@@ -209,3 +208,31 @@ class RobotRows(KeepsReadOnly):
     def __repr__(self) -> str:
         near = counted(len(self), "near pair")
         return f"<RobotRows: {near}, clearance {self.clearance:.6g}>"
+
+
+# Rows of derivatives by a robot's velocity, of many pairs at once.
+
+
+def rows_by_velocity(
+    normal: Array, points: tuple[Array, Array], signs: Array, motion: Motion, fold: Array | None
+) -> Array:
+    """(k, nv): the rate of each pair's distance by a unit of each velocity.
+
+    It is the normal times the velocity of the point on B less that of the point on A. What moves
+    both bodies alike drops out exactly, by its sign.
+
+    Parameters
+    ----------
+    normal : (k, 3) array
+        From A to B, world axes.
+    points : pair of (k, 3) arrays
+        Witness points on A and on B.
+    signs : (k, ns) array
+        1 where a screw moves B alone, -1 where it moves A alone, else 0.
+    motion : Motion
+    fold : (ns, nv) array or None
+    """
+    # the moment of the normal about the origin is the same at both points
+    moment = np.cross(0.5 * (points[0] + points[1]), normal)
+    rows: Array = (np.concatenate([normal, moment], axis=1) @ motion.screws) * signs
+    return rows if fold is None else rows @ fold

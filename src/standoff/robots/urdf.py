@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import os
 import xml.etree.ElementTree as ET
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from standoff.checks.numbers import yes_or_no
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError, of_extra
+from standoff.robots.joints import Joints
 from standoff.robots.loaded import Loaded
 from standoff.robots.mimics import Followed, followed
 from standoff.robots.pinocchio import Reading, assembled
+from standoff.robots.pinocchio_shapes import read_shape
+from standoff.robots.report import RIGID
 from standoff.robots.shapes import MOST_NAMED, Meshes
-from standoff.robots.urdf_checks import check_geometry, check_joints, places_of
-from standoff.robots.urdf_meshes import stand_ins
-from standoff.robots.urdf_pairs import disabled, pairs_left_out
-from standoff.robots.urdf_xml import UrdfTree, masters, read_tree
+from standoff.robots.tolerances import SAME_READING
+from standoff.robots.urdf_meshes import Shapes, stand_ins
+from standoff.robots.urdf_xml import ALONG_AXIS, UrdfTree, masters, read_tree
 
 with of_extra("Pinocchio", "pinocchio"):
     import pinocchio as pin
@@ -138,3 +143,156 @@ def _follows(tree: UrdfTree, mimic: bool | None, path: Path) -> bool:
         "mimic",
         mimic,
     )
+
+
+# What Pinocchio made of a URDF file, held against the file.
+
+with of_extra("Pinocchio", "pinocchio"):
+    import pinocchio as pin
+
+
+def check_geometry(tree: UrdfTree, geometry: Any, places: dict[str, Any], shapes: Shapes) -> None:
+    """Hold the geometries against the collision elements: all of them, their kinds, sizes and
+    places. ``places``: of each link (Pinocchio's frame of it).
+
+    Raises StandoffError: the first that is not there, or not as in the file.
+    """
+    objects = {x.name: x for x in geometry.geometryObjects}
+    for each in tree.collisions:
+        where = f"link {each.link!r}: <collision> {each.name.removeprefix(each.link + '_')}"
+        found = objects.pop(each.name, None)
+        if found is None:
+            raise StandoffError(
+                f"{where} (<{each.kind}>) is not in what Pinocchio read of the file: something of "
+                "the link is not as URDF has it; see what urdfdom printed, or leave the link out "
+                "of the file.",
+                "path",
+            )
+        of_link = places[each.link].placement
+        placed = of_link.actInv(found.placement).homogeneous
+        same = _near(placed, each.placement)
+        if each.name not in shapes:
+            kind, size, _ = read_shape(found.geometry)
+            same &= kind == each.kind and _near(size[:-1], each.size) if each.size else True
+        if not same:
+            raise StandoffError(
+                f"{where} (<{each.kind}>) is not what Pinocchio read of the file. Please report "
+                "the file.",
+                "path",
+            )
+    if objects:
+        names = ", ".join(sorted(objects))
+        raise StandoffError(f"Pinocchio read geometries that the file does not have: {names}.")
+
+
+def check_joints(tree: UrdfTree, model: Any, joints: Joints, places: dict[str, Any]) -> None:
+    """Hold the joints' places and axes against the file.
+
+    Raises StandoffError.
+    """
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, pin.neutral(model))
+    poses = {link: data.oMf[model.getFrameId(link, pin.FrameType.BODY)] for link in places}
+    for joint in tree.joints:
+        apart = poses[joint.parent].actInv(poses[joint.child]).homogeneous
+        same = _near(apart, joint.placement)
+        if joint.kind in ALONG_AXIS:
+            same &= joint.name in joints.names
+            same = same and _near(joints.axes[joints.names.index(joint.name)], joint.axis)
+        if not same:
+            raise StandoffError(
+                f"joint {joint.name!r} is not what Pinocchio read of the file. Please report the "
+                "file.",
+                "path",
+            )
+
+
+def places_of(tree: UrdfTree, model: Any) -> dict[str, Any]:
+    """Pinocchio's frame of each link.
+
+    Raises StandoffError: a link that Pinocchio did not read.
+    """
+    found = {}
+    for link in tree.links:
+        if not model.existFrame(link, pin.FrameType.BODY):
+            raise StandoffError(f"link {link!r} is not in what Pinocchio read of the file.", "path")
+        found[link] = model.frames[model.getFrameId(link, pin.FrameType.BODY)]
+    return found
+
+
+def _near(given: Any, wanted: Any) -> bool:
+    a, b = np.asarray(given, dtype=float), np.asarray(wanted, dtype=float)
+    if a.shape != b.shape:
+        return False
+    return bool((np.abs(a - b) <= SAME_READING * np.maximum(1.0, np.abs(b))).all())
+
+
+# Which pairs of a URDF file's geometries are left out, and why.
+
+Pairs = Mapping[frozenset[str], str]
+"""Of two links, or of one: why nothing of them is watched."""
+
+
+def pairs_left_out(tree: UrdfTree, standing: Collection[str]) -> dict[frozenset[str], str]:
+    """Links that are rigid to each other, and those that one joint of the file joins.
+
+    ``standing``: joints that do not move, beside those that are fixed.
+    """
+    groups = {link: [link] for link in tree.links}
+    for joint in tree.joints:
+        if joint.kind == "fixed" or joint.name in standing:
+            one = groups[joint.parent] + groups[joint.child]
+            groups.update(dict.fromkeys(one, one))
+    found = {
+        frozenset((joint.parent, joint.child)): f"joined by the joint {joint.name!r}"
+        for joint in tree.joints
+    }
+    for link in tree.links:
+        found |= {frozenset((link, other)): RIGID for other in groups[link]}
+    return found
+
+
+def disabled(
+    srdf: Path, root: Any, links: Collection[str]
+) -> tuple[dict[frozenset[str], str], list[str]]:
+    """Links whose pairs an SRDF disables, and what should be known of the file.
+
+    Raises StandoffError: an entry that names fewer than two links; a file of another robot, which
+    names none of this one's.
+    """
+    found: dict[frozenset[str], str] = {}
+    notes: list[str] = []
+    named: set[str] = set()
+    for entry in root.iter("disable_collisions"):
+        pair = [(entry.get(end) or "").strip() for end in ("link1", "link2")]
+        if not all(pair):
+            raise StandoffError(
+                f"{srdf}: {ET.tostring(entry, encoding='unicode').strip()} names no two links: "
+                "give link1 and link2.",
+                "srdf",
+                srdf,
+            )
+        named.update(pair)
+        reason = entry.get("reason")
+        found[frozenset(pair)] = "disabled by the SRDF" + (f" ({reason})" if reason else "")
+    strange = sorted(named - set(links))
+    if named and len(strange) == len(named):
+        raise StandoffError(
+            f"{srdf} is of another robot: it names links {', '.join(strange[:MOST_NAMED])}"
+            ", of which the URDF has none.",
+            "srdf",
+            srdf,
+        )
+    if strange:
+        notes.append(f"{srdf.name} names links that the robot does not have: {', '.join(strange)}")
+    if not named:
+        notes.append(f"{srdf.name} disables no pair")
+    unread = sorted({x.tag for x in root if x.tag in UNREAD})
+    if unread:
+        listed = ", ".join(f"<{tag}>" for tag in unread)
+        notes.append(f"{srdf.name} has {listed}, which is not read")
+    return found, notes
+
+
+UNREAD = ("disable_default_collisions", "enable_collisions", "link_sphere_approximation")
+"""Elements of an SRDF that speak of collisions too."""

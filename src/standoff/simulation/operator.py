@@ -17,8 +17,7 @@ from standoff.kernels.entries.preparing import prepare_simulation
 from standoff.kernels.state import arrays as T
 from standoff.progress import Progress
 from standoff.read_only import KeepsReadOnly
-from standoff.simulation.checked_contacts import check_contacts
-from standoff.simulation.coupled_tool import check_tool
+from standoff.simulation import stability
 from standoff.simulation.device import Device, DeviceReading
 from standoff.simulation.device_loop import (
     blocks,
@@ -370,4 +369,88 @@ class Operator(KeepsReadOnly):
         return (
             f"<Operator {self.method}, tracker {self.tracker}, dt = {self.dt:g}, of "
             f"{self.system!r}>"
+        )
+
+
+# Contacts of a system that a step can follow: what is refused before a run.
+
+
+def check_contacts(system: System, dt: float, method: str) -> None:
+    """Refuse contacts that a method does not follow with a step.
+
+    Raises StandoffError: a stiffness beyond the largest stable one, or a slip speed below the
+    least, which the message gives.
+    """
+    for pair in range(len(system.pairs)):
+        _check_stiffness(system, dt, method, pair)
+        _check_slip(system, dt, pair)
+
+
+def _check_stiffness(system: System, dt: float, method: str, pair: int) -> None:
+    """Refuse a contact that the step does not follow."""
+    contact = system.contacts[pair]
+    give = system.springs(pair) * system.give(pair)
+    depth = system.depth(pair)
+    slope, drag = contact.tangent(depth)
+    if stability.is_stable(method, give * slope, give * drag, dt):
+        return
+    largest = stability.largest_stable_stiffness(contact, method, dt, give, depth)
+    names = " and ".join(system.bodies[k].body.name for k in system.pairs[pair])
+    raise StandoffError(
+        f"stiffness = {contact.stiffness:g} of {names} is beyond what {method} follows at "
+        f"dt = {dt:g} down to the depth {depth:g}: the largest stable one is "
+        f"{largest:.4g}. Take a shorter step, less stiffness or damping, or give the depth "
+        "that the contact is meant for.",
+        "stiffness",
+        contact.stiffness,
+    )
+
+
+def _check_slip(system: System, dt: float, pair: int) -> None:
+    """Refuse friction that would throw a resting body to and fro."""
+    contact = system.contacts[pair]
+    least = stability.least_slip_speed(contact.friction, system.weight(pair), system.give(pair), dt)
+    if contact.friction > 0.0 and contact.slip_speed < least:
+        raise StandoffError(
+            f"slip_speed = {contact.slip_speed:g} is too small for dt = {dt:g}: friction "
+            "would throw a body back and forth under its own weight. Give at least "
+            f"{least:.4g}, or take a shorter step.",
+            "slip_speed",
+            contact.slip_speed,
+        )
+
+
+# Which couplers a system's step follows: the tool's own motion on the coupler's spring.
+
+
+def check_tool(system: System, dt: float, method: str) -> None:
+    """Refuse a coupler on whose spring the tool's motion would grow by the step alone.
+
+    Raises StandoffError: the message gives the largest stable stiffness.
+    """
+    coupler, tool = system.coupler, system.tool
+    if coupler is None or tool is None:
+        return
+    mass = system.bodies[tool].mass_properties
+    assert mass is not None, "a tool is free"
+    turning = 1.0 / float(mass.principal_moments[0])
+    # the coupler holds the tool at its origin
+    pushed = 1.0 / mass.mass + float(np.dot(mass.centre, mass.centre)) * turning
+    for kind, give in (("", pushed), ("rotational_", turning)):
+        stiffness = float(getattr(coupler, f"{kind}stiffness"))
+        damping = float(getattr(coupler, f"{kind}damping"))
+        if stability.is_stable_held(method, give * stiffness, give * damping, dt):
+            continue
+        largest = stability.largest_coupled_stiffness(damping, method, dt, give)
+        cure = (
+            f"the largest stable one is {largest:.4g}"
+            if largest > 0.0
+            else f"with {kind}damping = {damping:g} none is stable"
+        )
+        raise StandoffError(
+            f"{kind}stiffness = {stiffness:g} of the coupler, held over a step, is beyond what "
+            f"{method} follows at dt = {dt:g} with a tool that gives by {give:.4g} (one over its "
+            f"mass or least inertia): {cure}. Take a shorter step, or a heavier tool.",
+            f"{kind}stiffness",
+            stiffness,
         )

@@ -2,26 +2,177 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from standoff.checks.names import did_you_mean, one_of
 from standoff.checks.numbers import positive, whole_number
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.impact import Impact, time_of_impact
 from standoff.impact.answer import ImpactStatus
+from standoff.impact.moment import EPS, Box, Placed
 from standoff.impact.search import checked_clearance, checked_times
-from standoff.motion.bounds import known
+from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
+from standoff.motion.bounds import bounds_of, breaks_of, known
 from standoff.motion.moving import MotionLike, moving
 from standoff.motion.paths import Fixed, Offset
 from standoff.motion.pose import Pose
+from standoff.motion.vectors import length
 from standoff.tracking.inputs import matrix_and_mark
+from standoff.typing import Array, Ints
+from standoff.world.broad_phase import Search, pairs_of_boxes
 from standoff.world.model import Model
 from standoff.world.pieces import PieceUnion
 from standoff.world.poses import check_level, check_names
-from standoff.world.swept import Follower, meetings
+
+# Where the pieces of a world may be while their bodies follow paths: which pairs may meet.
+
+MOST_SPANS = 32
+"""Spans of time into which a search is divided at most: a piece has a box in each."""
+
+
+class Follower:
+    """A piece and the path of its frame, from one time to another [s].
+
+    Attributes
+    ----------
+    body : Body, Solid or PlanarSolid
+    path
+        One that knows its bounds.
+    rests : bool
+        Does it stay where it is, from the first time to the last?
+    """
+
+    def __init__(self, body: Any, path: Any, first: float, last: float) -> None:
+        self.body, self.path = body, path
+        self._box, self._first = Box(body), first
+        self.rests = not breaks_of(path, first, last)
+        if self.rests:
+            bound = bounds_of(path, first, last, self._box.middle)
+            self.rests = bound.speed == bound.angular_speed == 0.0
+
+    def boxes(self, times: Array) -> Array:
+        """Boxes (n - 1, 6) that hold the piece between each two times: low (3), high (3)."""
+        if self._box.plane:
+            return np.tile([-np.inf] * 3 + [np.inf] * 3, (len(times) - 1, 1))
+        if self.rests:
+            whole = self._between(float(times[0]), float(times[-1]))
+            return np.tile(whole, (len(times) - 1, 1))
+        return np.array([self._over(a, b) for a, b in itertools.pairwise(times.tolist())])
+
+    def _over(self, first: float, last: float) -> Array:
+        """A box between two times, over the breaks of the path."""
+        stops = [first, *breaks_of(self.path, first, last), last]
+        each = [self._between(a, b) for a, b in itertools.pairwise(stops)]
+        low, high = np.array(each)[:, :3].min(axis=0), np.array(each)[:, 3:].max(axis=0)
+        return np.concatenate([low, high])
+
+    def _between(self, first: float, last: float) -> Array:
+        """A box between two times without a break.
+
+        The middle of the piece's own box goes no farther from its two places together than its way,
+        and no farther from the chord than its acceleration bends it.
+        """
+        own, span = self._box, last - first
+        ends = [Placed(own.middle, self.path, time) for time in (first, last)]
+        bound = bounds_of(self.path, first, last, own.middle)
+        a, b = ends[0].centre, ends[1].centre
+        middle, way = 0.5 * (a + b), 0.5 * bound.speed * span
+        sag = 0.125 * bound.acceleration * span**2
+        low = np.maximum(middle - way, np.minimum(a, b) - sag)
+        high = np.minimum(middle + way, np.maximum(a, b) + sag)
+        turned = bound.angular_speed * span * own.reach
+        half = np.minimum(own.reach, np.abs(ends[0].rotation) @ own.half + turned) + own.radius
+        # of the poses, of the time, and of the sums here
+        lengths = own.reach + own.radius + length(own.middle) + bound.lengths + way
+        lengths += sum(length(x) for end in ends for x in (end.p, end.centre))
+        speed = bound.speed + bound.angular_speed * own.reach
+        late = max(abs(first), abs(last)) * speed
+        half = half + EPS * (POSE_ROUNDINGS * lengths + TIME_ROUNDINGS * late)
+        return np.concatenate([low - half, high + half])
+
+    def under(self, box: Array) -> float:
+        """How far a box is above this half-space, at least (length); 0 of one that moves."""
+        if not self.rests:
+            return 0.0
+        at = Placed(self._box.middle, self.path, self._first)
+        normal = at.rotation @ self._box.normal
+        middle, half = 0.5 * (box[3:] + box[:3]), 0.5 * (box[3:] - box[:3])
+        reach = float(np.abs(normal) @ half) + self._box.radius
+        lengths = length(middle) + length(at.centre) + length(at.p) + reach
+        height = float(normal @ (middle - at.centre)) - reach
+        return height - POSE_ROUNDINGS * EPS * lengths
+
+
+class Meeting(NamedTuple):
+    """A pair of pieces that may come as near as they must not.
+
+    Attributes
+    ----------
+    time : float
+        Up to it they are proven not to [s].
+    p, q : int
+        Their numbers.
+    """
+
+    time: float
+    p: int
+    q: int
+
+
+def meetings(
+    search: Search, followers: Sequence[Follower], first: float, last: float, clearance: float
+) -> list[Meeting]:
+    """The pairs of pieces that may come within the clearance, or within their margin where that is
+    more (length), in the order of the times at which they may.
+
+    At first each piece has one box for all the time; where many are near each other, the time is
+    divided.
+    """
+    found = _near(search, followers, np.array([first, last]), clearance)
+    moving = sum(not each.rests for each in followers)
+    spans = min(MOST_SPANS, len(found) // max(moving, 1))
+    if spans > 1:
+        found = _near(search, followers, np.linspace(first, last, spans + 1), clearance)
+    return found
+
+
+def _near(
+    search: Search, followers: Sequence[Follower], times: Array, clearance: float
+) -> list[Meeting]:
+    boxes = np.stack([each.boxes(times) for each in followers], axis=1)
+    reach = max(clearance, search.rules.greatest_margin)
+    found: dict[tuple[int, int], float] = {}
+    for time, now in zip(times, boxes, strict=False):
+        pairs = pairs_of_boxes(search, now, reach)
+        near = _gaps(search, followers, now, pairs) <= _required(search, pairs, clearance)
+        for p, q in pairs[near].tolist():
+            found.setdefault((p, q), float(time))
+    return sorted(Meeting(time, *pair) for pair, time in found.items())
+
+
+def _required(search: Search, pairs: Ints, clearance: float) -> Array:
+    """What each pair of pieces must keep (length)."""
+    i, j = search.pieces.owners[pairs.T]
+    return np.maximum(search.rules.margins_of(i * len(search.rules.kinds) + j), clearance)
+
+
+def _gaps(search: Search, followers: Sequence[Follower], boxes: Array, pairs: Ints) -> Array:
+    """The distances of boxes, and heights above half-spaces, rounded down (length)."""
+    a, b = boxes[pairs[:, 0]], boxes[pairs[:, 1]]
+    apart = np.maximum(0.0, np.maximum(b[:, :3] - a[:, 3:], a[:, :3] - b[:, 3:]))
+    gaps: Array = np.sqrt((apart**2).sum(axis=1)) * (1.0 - POSE_ROUNDINGS * EPS)
+    planes = search.pieces.planes[pairs]
+    for k in np.flatnonzero(planes.any(axis=1)).tolist():
+        p, q = pairs[k] if planes[k, 0] else pairs[k, ::-1]
+        gaps[k] = max(0.0, followers[p].under(boxes[q]))
+    return gaps
+
 
 OPTIONS = frozenset(("clearance", "tolerance", "start", "max_evaluations"))
 """Of ``so.time_of_impact``, for every pair."""

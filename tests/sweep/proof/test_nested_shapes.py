@@ -8,7 +8,7 @@ import pytest
 import standoff as so
 from standoff.bodies.body import Body
 from standoff.sweep.proof.extent import directions_for, supports
-from standoff.sweep.proof.nesting import GROWS, OWN, sense_of
+from standoff.sweep.proof.mover import GROWS, OWN, sense_of
 from standoff.sweep.subjects.shaped_body import shape_numbers
 from sweep.shape_jobs import TABLES, shaped_of, table_of
 

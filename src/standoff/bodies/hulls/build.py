@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,28 +14,47 @@ from standoff.bodies.convexity import Convexity
 from standoff.bodies.finishing import Packed, slack_of
 from standoff.bodies.hulls.fewer_points import fewer_points
 from standoff.bodies.hulls.heights import highest
-from standoff.bodies.hulls.joints import edge_turns, vertex_cones, wide_corners, widening
+from standoff.bodies.hulls.joints import (
+    Cones,
+    WideCorners,
+    edge_turns,
+    vertex_cones,
+    wide_corners,
+    widening,
+)
 from standoff.bodies.hulls.merging import merged
 from standoff.bodies.hulls.outlines import Outlines, outlines
-from standoff.bodies.hulls.packed import pack_polyhedron
-from standoff.bodies.hulls.parts import Edges, Faces, plane_checks
 from standoff.bodies.hulls.polyhedron import Polyhedron, polyhedron
 from standoff.bodies.hulls.qhull import hull_triangles
-from standoff.bodies.hulls.rectangles import inner_rectangles
-from standoff.bodies.hulls.samples import polyhedron_samples
-from standoff.bodies.packing import Assembled
-from standoff.bodies.report import BodyReport, DihedralAngle
+from standoff.bodies.made_parts import MadeParts
+from standoff.bodies.packing import Assembled, Counts, Sample, Writer, put_header, put_samples
+from standoff.bodies.report import BodyReport, DihedralAngle, PatchCheck
+from standoff.bodies.sampling import (
+    EDGE_BUDGET,
+    FACE_BUDGET,
+    VERTEX_BUDGET,
+    along_each,
+    first_grid,
+    second_grid,
+    stride,
+)
 from standoff.bodies.tolerances import (
     CONVEXITY_TOLERANCE,
     FAR_OFF,
+    INNER_SHARE,
     JOIN_TOLERANCE,
+    ON_SIDE,
     ROUNDOFF,
     SMOOTH_ANGLE,
     THIN,
     coordinate_roundoff,
 )
+from standoff.bodies.topology import Edge, Face
 from standoff.errors import BodyError
-from standoff.typing import Array
+from standoff.geometry.curves import Line
+from standoff.geometry.quadrics import Plane
+from standoff.kernels.body import layout as L
+from standoff.typing import Array, Bools, Ints
 
 # A polyhedron has as many faces at least.
 LEAST_FACES = 4
@@ -264,3 +284,226 @@ def thin_error(points: Array, word: str) -> BodyError | None:
         f"extent of {extent:.3g}, so that its facets cannot be distinguished. Make it thicker than "
         f"{THIN * extent:.1g}, or use a flat body, so.shapes.polygon."
     )
+
+
+# Edges and faces of a polyhedron as objects.
+
+
+class Edges(MadeParts[Edge]):
+    """The edges of a `Polyhedron`."""
+
+    source: Polyhedron
+
+    def __len__(self) -> int:
+        return len(self.source.ends)
+
+    def make(self, number: int) -> Edge:
+        first, last = self.source.ends[number].tolist()
+        vertices = self.source.vertices
+        return Edge(Line(vertices[first], vertices[last]), first, last)
+
+
+class Faces(MadeParts[Face]):
+    """The faces of a `Polyhedron`."""
+
+    source: Polyhedron
+
+    def __len__(self) -> int:
+        return self.source.n_faces
+
+    def make(self, number: int) -> Face:
+        solid = self.source
+        own = slice(*solid.starts[number : number + 2])
+        plane = Plane(solid.planes[number], solid.shifts[number])
+        loop = zip(solid.edges[own].tolist(), solid.senses[own].tolist(), strict=True)
+        return Face((plane,), tuple(loop))
+
+
+def plane_checks(count: int) -> tuple[PatchCheck, ...]:
+    """Of so many plane faces that each is convex, by theorem."""
+    return tuple(
+        PatchCheck(k, "Plane", "theorem", True, 0.0, True, (0.0, 0.0)) for k in range(count)
+    )
+
+
+# Rectangles of parameters on plane faces with straight sides, in which a frame need not ask for
+# the boundary (see ``bodies.sampling``, which finds those of any face).
+
+
+def inner_rectangles(solid: Polyhedron, pcurves: Array) -> Array:
+    """(f, 4) rows u0, u1, v0, v1 about the middles of faces, as large as their sides let them be
+    in the proportions of the corners' box; NO_INNER where the middle is not inside all sides."""
+    begins, owners = solid.starts[:-1], solid.owners
+    spots = np.where((solid.senses > 0)[:, None], pcurves[:, :, 2], pcurves.sum(axis=2))
+    steps = pcurves[:, :, 0] * solid.senses[:, None]
+    # the face is on the left of every step: the middle, u = v = 0, by this much
+    inside = spots[:, 0] * steps[:, 1] - spots[:, 1] * steps[:, 0]
+    half = np.minimum(np.maximum.reduceat(spots, begins), -np.minimum.reduceat(spots, begins))
+    reach = np.abs(steps[:, 1]) * half[owners, 0] + np.abs(steps[:, 0]) * half[owners, 1]
+    share = np.minimum.reduceat(inside / np.where(reach > 0.0, reach, 1.0), begins)
+    kept = INNER_SHARE * np.clip(share, 0.0, 1.0)[:, None] * half
+    found = np.column_stack([-kept[:, 0], kept[:, 0], -kept[:, 1], kept[:, 1]])
+    found[(share <= 0.0) | (half <= 0.0).any(axis=1)] = L.NO_INNER
+    return found
+
+
+# Points of a polyhedron's boundary where a cold start may begin, as ``bodies.sampling`` has them
+# of any body: the same grids and budgets.
+
+
+def polyhedron_samples(solid: Polyhedron, pcurves: Array) -> list[Sample]:
+    """Points on every kind of feature, the budgets shared among the features of a kind."""
+    edges, vertices = len(solid.ends), len(solid.vertices)
+    found = []
+    normals = solid.normals
+    for face in range(0, solid.n_faces, stride(solid.n_faces, FACE_BUDGET)):
+        columns, shift = solid.planes[face, :, :2], solid.shifts[face]
+        for u, v in _spots(solid, pcurves, face).tolist():
+            point = shift + columns @ (u, v)
+            found.append(Sample(point, normals[face], face, face, u, v))
+    shares = along_each(edges)
+    for edge in range(0, edges, stride(edges, EDGE_BUDGET)):
+        first, last = solid.vertices[solid.ends[edge]]
+        for t in shares.tolist():
+            point = first + t * (last - first)
+            found.append(Sample(point, np.zeros(3), solid.n_faces + edge, -1, t, 0.0))
+    for vertex in range(0, vertices, stride(vertices, VERTEX_BUDGET)):
+        feature = solid.n_faces + edges + vertex
+        found.append(Sample(solid.vertices[vertex], np.zeros(3), feature, -1, 0.0, 0.0))
+    return found
+
+
+def _spots(solid: Polyhedron, pcurves: Array, face: int) -> Array:
+    """(n, 2) parameters on a face."""
+    own = slice(*solid.starts[face : face + 2])
+    ahead = (solid.senses[own] > 0)[:, None]
+    corners = np.where(ahead, pcurves[own, :, 2], pcurves[own].sum(axis=2))
+    steps = np.where(ahead, pcurves[own, :, 0], -pcurves[own, :, 0])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    n = first_grid(solid.n_faces)
+    for count in (n, second_grid(n)):  # a slender face may miss the first grid
+        ticks = (np.arange(count) + 0.5) / count
+        grid = np.stack(np.meshgrid(ticks, ticks, indexing="ij"), axis=-1).reshape(-1, 2)
+        spots = low + grid * (high - low)
+        away = spots[:, None] - corners
+        left = steps[:, 0] * away[:, :, 1] - steps[:, 1] * away[:, :, 0]
+        inside = (left >= -ON_SIDE * np.prod(high - low)).all(axis=1)
+        if inside.any():
+            return np.asarray(spots[inside])
+    return np.zeros((0, 2))
+
+
+# The two flat arrays of a polyhedron, the same that ``bodies.packing`` writes part by part.
+
+# A line's pcurve: its range, then the 3 x 3 matrix; an edge's line: its range, 3 x 3 map and shift.
+COEDGE_REALS = L.PCURVE_DATA + 9
+LINE_REALS = L.CURVE_DATA + 12
+SECTOR_REALS = 5
+
+
+def pack_polyhedron(
+    solid: Polyhedron,
+    joints: tuple[Bools, Cones, WideCorners],
+    pcurves: Array,
+    box: tuple[Array, Array],
+    inner: Array,
+    radius: float,
+    slack: float,
+    samples: Sequence[Sample],
+) -> tuple[Ints, Array]:
+    """The (ints, reals) of a polyhedron.
+
+    joints : which edges are smooth, the normal cones, the wide corners; inner : (f, 4) rectangles
+    of parameters on the faces; the others as for ``packing.pack``.
+    """
+    smooth, cones, wide = joints
+    w = Writer()
+    faces, edges, vertices = solid.n_faces, len(solid.ends), len(solid.vertices)
+    put_header(w, Counts(3, faces, edges, vertices, faces, len(samples)), box, radius, slack)
+    _put_faces(w, solid, pcurves, inner)
+    _put_edges(w, solid, smooth)
+    _put_vertices(w, solid, cones, wide)
+    put_samples(w, samples)
+    return w.arrays()
+
+
+def _put_faces(w: Writer, solid: Polyhedron, pcurves: Array, inner: Array) -> None:
+    faces, corners = solid.n_faces, len(solid.corners)
+    number, places = np.arange(faces), np.arange(corners)
+    charts = len(w.reals) + L.SURFACE_DATA * number + COEDGE_REALS * solid.starts[:-1]
+    coedges = len(w.reals) + L.SURFACE_DATA * (solid.owners + 1) + COEDGE_REALS * places
+    block = np.zeros(L.SURFACE_DATA * faces + COEDGE_REALS * corners)
+    surface = np.zeros((faces, L.SURFACE_DATA))
+    surface[:, L.AFFINE : L.AFFINE + 9] = solid.planes.reshape(faces, 9)
+    surface[:, L.AFFINE + 9 : L.AFFINE + 12] = solid.shifts
+    surface[:, L.INVERSE : L.INVERSE + 9] = np.linalg.inv(solid.planes).reshape(faces, 9)
+    surface[:, L.OUTWARD], surface[:, L.LIMIT] = 1.0, np.inf
+    surface[:, L.INNER : L.INNER + 4] = inner
+    own = np.zeros((corners, COEDGE_REALS))
+    own[:, L.PCURVE_LAST] = own[:, -1] = 1.0
+    own[:, L.PCURVE_DATA : L.PCURVE_DATA + 6] = pcurves.reshape(corners, 6)
+    block[charts[:, None] - len(w.reals) + np.arange(L.SURFACE_DATA)] = surface
+    block[coedges[:, None] - len(w.reals) + np.arange(COEDGE_REALS)] = own
+    w.real_block(block)
+    ones = np.ones(faces, dtype=np.int64)
+    w.table(L.FACES, np.column_stack([number, ones]))
+    kind, plain = L.PLANE * ones, 0 * ones
+    rows = [kind, charts, solid.starts[:-1], np.diff(solid.starts), number, plain]
+    w.table(L.CHARTS, np.column_stack(rows))
+    line = np.full(corners, L.LINE)
+    w.table(L.COEDGES, np.column_stack([solid.edges, line, coedges, solid.senses, solid.owners]))
+
+
+def _put_edges(w: Writer, solid: Polyhedron, smooth: Bools) -> None:
+    first, last = (solid.vertices[solid.ends[:, k]] for k in range(2))
+    n = len(first)
+    block = np.zeros((n, LINE_REALS))
+    block[:, L.EDGE_T1] = 1.0
+    block[:, L.CURVE_DATA : L.CURVE_DATA + 9 : 3] = last - first
+    block[:, L.CURVE_DATA + 9 :] = first
+    offsets = w.real_block(block.ravel()) + LINE_REALS * np.arange(n)
+    flags = np.where(smooth, L.SMOOTH, 0)
+    kind = np.full(n, L.LINE)
+    w.table(L.EDGES, np.column_stack([kind, offsets, flags, solid.ends, solid.sides]))
+
+
+def _put_vertices(w: Writer, solid: Polyhedron, cones: Cones, wide: WideCorners) -> None:
+    n = len(solid.vertices)
+    fans = np.bincount(solid.ends.ravel(), minlength=n)
+    sectors = np.bincount(wide.vertices, minlength=n)
+    reals = 3 + SECTOR_REALS * sectors + 3 * cones.counts
+    points = len(w.reals) + np.cumsum(reals) - reals
+    ints = 2 * (fans + sectors)
+    rows = len(w.ints) + L.VERTEX_STRIDE * n
+    fan_at = rows + np.cumsum(ints) - ints
+    sector_at, cone_at = fan_at + 2 * fans, points + 3 + SECTOR_REALS * sectors
+    base = len(w.reals)
+    block = np.zeros(int(reals.sum()))
+    block[points[:, None] - base + np.arange(3)] = solid.vertices
+    sector_reals = points[wide.vertices] + 3 + SECTOR_REALS * _ranks(wide.vertices)
+    sector = np.column_stack(
+        [np.full(len(wide.faces), float(L.SECTOR_WIDE)), wide.spots, wide.spans]
+    )
+    block[sector_reals[:, None] - base + np.arange(SECTOR_REALS)] = sector
+    at = np.repeat(np.arange(n), cones.counts)
+    place = cone_at[at] + 3 * _ranks(at)
+    block[place[:, None] - base + np.arange(3)] = solid.normals[cones.faces]
+    w.real_block(block)
+    w.table(
+        L.VERTICES,
+        np.column_stack([points, fan_at, fans, sector_at, sectors, cone_at, cones.counts]),
+    )
+    tail = np.zeros(int(ints.sum()), dtype=np.int64)
+    order = np.argsort(solid.ends.ravel(), kind="stable")
+    owner = solid.ends.ravel()[order]
+    spot = fan_at[owner] - rows + 2 * _ranks(owner)
+    tail[spot], tail[spot + 1] = order // 2, order % 2
+    spot = sector_at[wide.vertices] - rows + 2 * _ranks(wide.vertices)
+    tail[spot], tail[spot + 1] = wide.faces, sector_reals
+    w.int_block(tail)
+
+
+def _ranks(ascending: Ints) -> Ints:
+    """Of every item of an ascending array how many equal ones come before it."""
+    begins = np.searchsorted(ascending, ascending)
+    return np.asarray(np.arange(len(ascending)) - begins, dtype=np.int64)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from standoff.bodies.hulls.fewer_points import directions
 from standoff.kernels.solids.minima_sets import SET_BRANCH
 from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.solids.answer import NEAR_BOUNDS, Overlap, SolidProximity
-from standoff.solids.parting import least_way_out
+from standoff.solids.parting import Gap, least_way_out, shortest
 from standoff.solids.spatial.contact import (
     MOST_REGIONS,
     Region,
@@ -27,8 +28,7 @@ from standoff.solids.spatial.overlap import common_ball, deepened
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.spatial.tolerances import CONTACT_REACH, HELD_WAY, PARTED_SPARE
-from standoff.solids.spatial.way_out import GapOf, short_way
+from standoff.solids.spatial.tolerances import CONTACT_REACH, HELD_WAY, PARTED_SPARE, PROOF_ROUNDING
 from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
 from standoff.typing import Array
@@ -182,3 +182,27 @@ def way_apart(places: Sequence[Place], spare: float) -> Array | None:
     first order; None where there is none."""
     normals = np.array([place.normal for place in places])
     return least_way_out(normals, np.array([spare - place.distance for place in places]))
+
+
+# A short way by which one of two solids that overlap is proven to be parted from the other.
+
+GapOf = Callable[[PlacedPair, float], Gap | None]
+"""How far a pair is apart, proven to a tolerance, and the normal there; None where it is not."""
+ALL_ROUND = 96
+"""Directions that are looked along."""
+
+
+def short_way(pair: PlacedPair, gap_of: GapOf, known: Array | None = None) -> Array:
+    """A world vector: B, moved by it, is proven to be apart from A. It is no longer than one that
+    is `known`."""
+    ways = directions(ALL_ROUND)
+    if not (pair.a.has_end and pair.b.has_end):
+        ways = pair.ra[None, :, 2] if pair.b.has_end else -pair.rb[None, :, 2]
+    spare = 4.0 * PROOF_ROUNDING * (pair.size + float(np.linalg.norm(pair.relative[9:])))
+    lengths = pair.a.heights(ways @ pair.ra) + pair.b.heights(-ways @ pair.rb) + spare
+    lengths -= ways @ (pair.pb - pair.pa)
+
+    def gap_by(way: Array) -> Gap | None:
+        return gap_of(pair.moved(way), 0.5 * PARTED_SPARE * float(np.linalg.norm(way)))
+
+    return shortest(ways, lengths, gap_by, known)
