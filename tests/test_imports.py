@@ -151,8 +151,8 @@ def test_import_loads_three_modules_and_no_other_package() -> None:
 def test_help_loads_only_what_reads_the_arguments(command: str) -> None:
     given = [*command.split(), "--help"]
     modules = loaded(f"from standoff.cli import main\nmain({given})")
-    parts = ("", ".added", ".arguments", ".entry", ".errors", ".option_groups", ".overview")
-    more = (".robot_arguments", ".sweep_arguments", ".terminal")
+    parts = ("", ".added", ".arguments", ".entry", ".errors", ".option_groups")
+    more = (".sweep_arguments", ".terminal")
     command_line = {f"standoff.cli{part}" for part in (*parts, *more)} | LAWS
     assert {name for name in modules if packages({name}) == {"standoff"}} == ROOT | command_line
     shown = STUDIES if not command else [name for name in STUDIES if name == command]

@@ -20,7 +20,7 @@ from standoff_studies.soak import (
 )
 from standoff_studies.soak.solid_judge import NOISE
 from standoff_studies.soak.solid_outlines import Arc, Cubic, Outline, Segment, polygon
-from standoff_studies.soak.solid_poses import draw_poses
+from standoff_studies.soak.solid_poses import draw_poses, pairs_of
 from standoff_studies.soak.solid_truth import Egg, Elbow, Hollowed, Swept, Turned, signed
 
 PAIR = "drum", "plate"
@@ -282,3 +282,32 @@ def test_a_cubic_may_have_two_places_that_are_nearly_nearest():
     rho = np.hypot(*point[0, :2])
     least = np.hypot(spots[:, 0] - rho, spots[:, 1] - point[0, 2]).min()
     assert abs(signed(vase, point)[0] - least) < 1e-8
+
+
+@pytest.mark.parametrize(("block", "pose"), [(41, 0), (41, 4), (190, 19), (312, 6)])
+def test_an_overlap_that_planes_prove_has_a_ball_too(block, pose):
+    """In these poses of seed 72 none is found about the middle of the deepest place."""
+    pairs = pairs_of(list(solid_pairs.MAKERS))
+    (a, first), (b, second) = (solid_pairs.made(name) for name in pairs[block % len(pairs)])
+    poses = draw_poses(a, b, 20, np.random.default_rng([72, block]))
+    verdict, lines = judged(
+        (a, b, (first, second), tuple(each[pose : pose + 1] for each in poses)), spatial_distance
+    )
+    assert verdict.sound, lines
+    assert {status for _, status in verdict.statuses} == {"OVERLAPPING"}
+
+
+@pytest.mark.parametrize("deadline", [100, 400])
+def test_what_is_called_a_continuum_before_its_proof_is_at_the_distance(deadline):
+    """Newton's method came to nearer pairs than the answer's own, which were told as its ends."""
+    (a, first), (b, second) = (solid_pairs.made(name) for name in ("ring", "pulley"))
+    poses = draw_poses(a, b, 20, np.random.default_rng([5]))
+    told = []
+
+    def ask(*pair):
+        told.append(spatial_distance(*pair, Asked(deadline=deadline)))
+        return told[-1]
+
+    verdict, lines = judged((a, b, (first, second), tuple(p[17:18] for p in poses)), ask)
+    assert verdict.sound, lines
+    assert told[0].status is Status.DEADLINE

@@ -3,6 +3,7 @@ one point whose radii are the greatest together."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from typing import Any
 
@@ -145,18 +146,20 @@ def _lattice(pair: PlacedPair) -> Array:
     return np.asarray(-high[3:] + LATTICE * (high[:3] + high[3:]))
 
 
-def ball_beside(pair: PlacedPair, starts: Array, least: float, left: int) -> Overlap | None:
+def ball_beside(
+    pair: PlacedPair, starts: Array, least: float, left: int, steps: Sequence[float] = ()
+) -> Overlap | None:
     """The same from the first point inside both that is found beside common points of the
-    boundaries."""
+    boundaries, or near to them; at steps that are lengths, or else at `LOOKS`."""
     ascent = Ascent(pair, left)
     ways = WAYS / np.linalg.norm(WAYS, axis=1)[:, None]
     for start in starts:
-        for look in LOOKS:
-            spots = start + look * ascent.size * ways
+        for step in steps or [look * ascent.size for look in LOOKS]:
+            spots = start + step * ways
             depths = [ascent.proven(spot).radius for spot in spots if ascent.left > 0]
             k = int(np.argmax(depths)) if depths else 0
             if depths and depths[k] > least:
-                top = ascent.climbed(spots[k], np.minimum, look * ascent.size)
+                top = ascent.climbed(spots[k], np.minimum, step)
                 ball = ascent.proven(top)
                 return ball if ball.radius > depths[k] else ascent.proven(spots[k])
     return None

@@ -24,11 +24,17 @@ from standoff.solids.spatial.contact import (
 )
 from standoff.solids.spatial.held import depth_bound
 from standoff.solids.spatial.minimum import Found, Sought
-from standoff.solids.spatial.overlap import common_ball, deepened
+from standoff.solids.spatial.overlap import ball_beside, common_ball, deepened
 from standoff.solids.spatial.pair import Place, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.spatial.tolerances import CONTACT_REACH, HELD_WAY, PARTED_SPARE, PROOF_ROUNDING
+from standoff.solids.spatial.tolerances import (
+    BESIDE,
+    CONTACT_REACH,
+    HELD_WAY,
+    PARTED_SPARE,
+    PROOF_ROUNDING,
+)
 from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
 from standoff.typing import Array
@@ -85,7 +91,8 @@ def closed(
     pair: PlacedPair, overlap: Overlap, place: Place, sought: Sought, gap_of: GapOf
 ) -> Overlap:
     """An overlap whose bounds are brought near to each other, where they are not: by a shorter way
-    out, by a depth elsewhere than at its deepest place, and by what holds all round."""
+    out, by a depth elsewhere than at its deepest place, and by what holds all round. Where no ball
+    was found at that place, one is looked for elsewhere."""
 
     def is_far() -> bool:
         return overlap.most > NEAR_BOUNDS * max(overlap.depth, -place.distance)
@@ -95,11 +102,16 @@ def closed(
         overlap = overlap._replace(depth=max(overlap.depth, both.depth))
     if is_far():
         overlap = overlap._replace(parting=short_way(pair, gap_of, overlap.parting))
-    if is_far():
-        starts = place.point_a[None]
-        ball = common_ball(pair, starts, sought.tolerance, sought.deadline)
-        if ball and ball.depth > overlap.depth:
-            overlap = ball._replace(parting=overlap.parting)
+    if is_far() or overlap.radius == 0.0:
+        ends = np.array([place.point_a, place.point_b, 0.5 * (place.point_a + place.point_b)])
+        ball = common_ball(pair, ends[:1], sought.tolerance, sought.deadline)
+        if not ball and overlap.radius == 0.0:
+            steps = [part * abs(place.distance) for part in BESIDE]
+            ball = ball_beside(pair, ends, sought.tolerance, sought.deadline, steps)
+        if ball:
+            larger = ball if ball.radius > overlap.radius else overlap
+            depth = max(ball.depth, overlap.depth)
+            overlap = larger._replace(depth=depth, parting=overlap.parting)
     about = max(overlap.depth, -place.distance)
     if overlap.most > HELD_WAY * about:
         overlap = overlap._replace(held=depth_bound(pair, sought.tolerance, about))

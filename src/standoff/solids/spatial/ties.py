@@ -61,11 +61,10 @@ def continuum_of(pair: PlacedPair, places: Sequence[Place], found: Found) -> Con
     same pieces. Of a surface that ends beside strips and corners, such as a rounded box's, the
     nearest places may all be at its rim: it is one if there are pairs between them too.
     """
-    most = found.upper + found.tolerance
     told: Continuum | None = None
     every = [(place.point_a, place.point_b) for place in places]
     for place in _likeliest(pair, places)[:TRIED]:
-        others = _others(pair, place, most)
+        others = _others(pair, place, found)
         every += others
         if others:
             told = _described(place, others, places)
@@ -128,14 +127,19 @@ def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     return [places[k] for k in sorted(order, key=lambda k: turn[k])]
 
 
-def _others(pair: PlacedPair, place: Place, most: float) -> list[tuple[Array, Array]]:
-    """Pairs (x, y) in the leaves of a place at the least distance, more than a little away."""
+def _others(pair: PlacedPair, place: Place, found: Found) -> list[tuple[Array, Array]]:
+    """Pairs (x, y) in the leaves of a place at the least distance, more than a little away.
+
+    Where that is not proven Newton's method may come to nearer ones: they are no ties.
+    """
+    most, least = found.upper + found.tolerance, found.upper - found.tolerance
     x, y = pair.points_of(pair.found_from(place.row, starts(pair, place.row), most))
     off_a, off_b = (
         np.linalg.norm(x - place.point_a, axis=1),
         np.linalg.norm(y - place.point_b, axis=1),
     )
     far = np.maximum(off_a, off_b) > CONTINUUM_LENGTH * pair.size
+    far &= np.linalg.norm(x - y, axis=1) >= least
     return list(zip(x[far], y[far], strict=True))
 
 
