@@ -311,3 +311,14 @@ def test_what_is_called_a_continuum_before_its_proof_is_at_the_distance(deadline
     verdict, lines = judged((a, b, (first, second), tuple(p[17:18] for p in poses)), ask)
     assert verdict.sound, lines
     assert told[0].status is Status.DEADLINE
+
+
+def test_a_point_that_is_on_a_boundary_to_a_rounding_has_no_side():
+    """A query came to a point 4e-13 from the pole of a vase, whose side no ray decides."""
+    names = pairs_of(list(solid_pairs.MAKERS))[1419 % 105]
+    (a, first), (b, second) = (solid_pairs.made(name) for name in names)
+    poses = draw_poses(a, b, 20, np.random.default_rng([72, 1419]))
+    verdict, lines = judged(
+        (a, b, (first, second), tuple(each[14:15] for each in poses)), spatial_distance
+    )
+    assert verdict.sound, lines

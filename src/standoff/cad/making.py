@@ -84,6 +84,13 @@ def made_part(
         except (StandoffError, RuntimeError) as error:
             made, solid = None, None
             report = replace(report, refused=str(error))
+        except Exception as error:
+            # OpenCASCADE's own have no common class in Python
+            if not type(error).__module__.startswith("OCP"):
+                raise
+            made, solid = None, None
+            failed = f"OpenCASCADE fails on it with {type(error).__name__} {error}"
+            report = replace(report, refused=failed.rstrip())
     notes = (*report.notes, *(f"OpenCASCADE: {line}" for line in lines))
     return Made(made, replace(report, notes=notes, seconds=perf_counter() - start), solid)
 

@@ -115,7 +115,10 @@ def depth_beside(
         scratch(threading.get_ident()),
         np.zeros(8, dtype=np.int64) if counts is None else counts,
     )
-    side = float(told[0]) or _by_ray(solid, point)
+    side = float(told[0])
+    if side == 0.0:  # within the tolerance of the boundary it has no side
+        near = float(told[1]) <= PROOF_TOLERANCE * solid.size
+        side = 1.0 if near else _by_ray(solid, point)
     return -side * float(told[1]), told[2:]
 
 

@@ -24,6 +24,9 @@ TOLERANCE = 1.01e-10
 """Of both sizes: how wide a proven interval may be."""
 NOISE = 1e-11
 """Of both sizes: what roundings and the last cells of the search may do to a length."""
+BESIDE = 1e-10
+"""The same for how far a witness point of an overlap may be past the side of its face: the
+tolerance to which places are one."""
 END = 1e-8
 """Of both sizes: how far the ends of a continuum may be off."""
 DEEP = 1e-7
@@ -251,6 +254,8 @@ def _place_faults(case: Case) -> list[tuple[str, str]]:
         pairs += [(x, y, told.distance, END * case.size) for x, y in told.continuum.ends]
     for k, (x, y, distance, spare) in enumerate(pairs):
         off = max(abs(case.depths(x)[0]), abs(case.depths(y)[1]))
+        if told.status is Status.OVERLAPPING:
+            spare = max(spare, BESIDE * case.size)
         name = "witness" if k <= len(told.minima) else "continuum"
         if not off <= spare:
             found.append((name, f"{off!r} off a boundary, place {k}"))

@@ -139,26 +139,39 @@ def part_of(rng: np.random.Generator) -> Any:
     return shape if valid else None
 
 
-def read_through(shape: Any, route: str) -> Any:
-    """The solid of a shape, through a file or not."""
+def read_through(shape: Any, route: str) -> tuple[Any, Any]:
+    """The solid of a shape, through a file or not, and the shape that OpenCASCADE reads there: its
+    STEP files do not always hold what was written."""
     if route == "as it is":
-        return so.cad.from_shape(shape)[0].solid
+        return so.cad.from_shape(shape)[0].solid, shape
     with tempfile.TemporaryDirectory() as folder:
         file = str(Path(folder) / f"part.{route}")
         if route == "brep":
+            from OCP.BRep import BRep_Builder
             from OCP.BRepTools import BRepTools
+            from OCP.TopoDS import TopoDS_Shape
 
             BRepTools.Write_s(shape, file)
+            again = TopoDS_Shape()
+            BRepTools.Read_s(again, file, BRep_Builder())
         else:
             from OCP.Message import Message, Message_Gravity
-            from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+            from OCP.STEPControl import (
+                STEPControl_Reader,
+                STEPControl_StepModelType,
+                STEPControl_Writer,
+            )
 
             for printer in Message.DefaultMessenger_s().Printers():
                 printer.SetTraceLevel(Message_Gravity.Message_Fail)
             writer = STEPControl_Writer()
             writer.Transfer(shape, STEPControl_StepModelType.STEPControl_AsIs)
             writer.Write(file)
-        return so.cad.read_cad(file)[0].solid
+            reader = STEPControl_Reader()
+            reader.ReadFile(file)
+            reader.TransferRoots()
+            again = reader.OneShape()
+        return so.cad.read_cad(file)[0].solid, again
 
 
 def between(one: Any, other: Any) -> float:
@@ -286,7 +299,7 @@ def judge_part(number: int, seed: int) -> tuple[Judged, list[str]]:
         shape = part_of(rng)
     route = ROUTES[number % len(ROUTES)]
     try:
-        solid = read_through(shape, route)
+        solid, shape = read_through(shape, route)
         reals = solid.boundary.reals
         middle, half = reals[L.BOX_CENTRE : L.BOX_CENTRE + 3], reals[L.BOX_HALF : L.BOX_HALF + 3]
         points = middle + 1.3 * half * rng.uniform(-1.0, 1.0, (POINTS, 3))
