@@ -251,7 +251,7 @@ def measured_cold(kernel: str, n: int) -> dict[str, float]:
     fast = timed(lambda: threads.start_threads(kernel, n, arguments), n)
     rows.rows[:], rows.done[:] = outs.copy_to_host(), done.copy_to_host()
     given, answers = (np.eye(4)[None], rows.poses), np.empty_like(rows.rows)
-    answering = cold.Answering(kernel)
+    answering = cold.ColdKernel(kernel)
     whole = timed(lambda: answering(rows.tables, given, answers), n)
     return {"rate": fast, "rate with copies": whole, "share": rows.done.mean(), **rows.judged()}
 

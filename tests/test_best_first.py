@@ -8,7 +8,7 @@ from itertools import pairwise, permutations
 import numpy as np
 import pytest
 
-from standoff.best_first import Ending, Part, best_first
+from standoff.best_first import Ending, SearchPart, best_first
 
 LEAST = 1e-12
 
@@ -24,7 +24,7 @@ class Line:
         middle = 0.5 * (low + high)
         value = float(self.f(middle))
         bound = value - 0.5 * self.lipschitz * (high - low)
-        return Part(bound, (low, high), value, high - low <= self.shortest)
+        return SearchPart(bound, (low, high), value, high - low <= self.shortest)
 
     def halves(self, chosen):
         self.split_ones += [part.body for part in chosen]
@@ -97,9 +97,9 @@ def test_equal_bounds_are_split_as_they_came():
 
     def halves(chosen):
         order.extend(part.body for part in chosen)
-        return [Part(1.0, part.body + "'") for part in chosen]
+        return [SearchPart(1.0, part.body + "'") for part in chosen]
 
-    best_first([Part(0.0, name) for name in "abc"], halves, lambda _: 1.0, lambda _: math.inf)
+    best_first([SearchPart(0.0, name) for name in "abc"], halves, lambda _: 1.0, lambda _: math.inf)
     assert order == ["a", "b", "c"]
 
 
@@ -152,7 +152,7 @@ def test_a_search_that_has_met_what_it_looks_for_may_end():
 
 def test_the_first_place_of_the_least_value_is_kept_and_no_number_is_none():
     seen = {"a": math.nan, "b": 2.0, "c": 1.0, "d": 1.0}
-    parts = [Part(0.0, name, value) for name, value in seen.items()]
+    parts = [SearchPart(0.0, name, value) for name, value in seen.items()]
     found = best_first(parts, lambda chosen: [], lambda _: -1.0, lambda _: math.inf)
     assert (found.found, found.place, found.splits) == (1.0, "c", 0)
 
@@ -168,7 +168,7 @@ def test_nothing_to_search_is_proven():
 
 
 def test_parts_that_are_closed_at_first_are_left_alone():
-    parts = [Part(-1.0, "a", closed=True), Part(0.0, "b")]
+    parts = [SearchPart(-1.0, "a", closed=True), SearchPart(0.0, "b")]
     split = []
     found = best_first(
         parts, lambda chosen: split.append(chosen[0].body) or [], lambda _: 1.0, lambda _: math.inf

@@ -28,7 +28,7 @@ class Ending(Enum):
         return self.value
 
 
-class Part(NamedTuple, Generic[T]):
+class SearchPart(NamedTuple, Generic[T]):
     """A part of what is searched.
 
     Attributes
@@ -49,7 +49,7 @@ class Part(NamedTuple, Generic[T]):
     closed: bool = False
 
 
-class Searched(NamedTuple, Generic[T]):
+class SearchOutcome(NamedTuple, Generic[T]):
     """What a search has come to.
 
     Attributes
@@ -61,7 +61,7 @@ class Searched(NamedTuple, Generic[T]):
         The least value that was met; inf where none was.
     place : object or None
         The part in which it was met first.
-    open, closed : list of Part
+    open, closed : list of SearchPart
         What is left, and what could no longer be split.
     splits : int
         How many parts were split.
@@ -71,23 +71,23 @@ class Searched(NamedTuple, Generic[T]):
     least: float
     found: float
     place: T | None
-    open: list[Part[T]]
-    closed: list[Part[T]]
+    open: list[SearchPart[T]]
+    closed: list[SearchPart[T]]
     splits: int
 
 
 def best_first(
-    parts: Iterable[Part[T]],
-    split: Callable[[list[Part[T]]], Iterable[Part[T]]],
+    parts: Iterable[SearchPart[T]],
+    split: Callable[[list[SearchPart[T]]], Iterable[SearchPart[T]]],
     goal: Callable[[float], float],
     most: Callable[[float], float],
     batch: int = 1,
-) -> Searched[T]:
+) -> SearchOutcome[T]:
     """Split the parts with the least bounds until none is below a goal.
 
     Parameters
     ----------
-    parts : iterable of Part
+    parts : iterable of SearchPart
         What is searched; of equal bounds the one that came first is split first.
     split : function
         From the parts that are to be split, the least first, to the parts that they are made of.
@@ -99,11 +99,11 @@ def best_first(
     batch : int
         Parts that are split at once.
     """
-    queue: list[tuple[float, int, Part[T]]] = []
-    closed: list[Part[T]] = []
+    queue: list[tuple[float, int, SearchPart[T]]] = []
+    closed: list[SearchPart[T]] = []
     found, place, number, splits = math.inf, None, 0, 0
 
-    def look(new: Iterable[Part[T]]) -> None:
+    def look(new: Iterable[SearchPart[T]]) -> None:
         nonlocal found, place, number
         for part in new:
             if part.seen < found:
@@ -125,4 +125,4 @@ def best_first(
         ending = Ending.GOAL
     else:
         ending = Ending.SPENT if queue and queue[0][0] < goal(found) else Ending.CLOSED
-    return Searched(ending, least, found, place, left, closed, splits)
+    return SearchOutcome(ending, least, found, place, left, closed, splits)

@@ -48,7 +48,7 @@ def distance(a: Body, b: Body, *, undefined: str = "nan", name: str = "distance"
         those of the distance at the nearest pose.
     """
     check_name(name)
-    return _Value(ambient.Pair.of(a, b, undefined), name)
+    return _CasadiValue(ambient.AmbientPair.of(a, b, undefined), name)
 
 
 def design_distance(
@@ -87,7 +87,7 @@ def design_distance(
     check_name(name)
     pair = design_a, design_b
     params = [x.parameters if isinstance(x, Design) else {} for x in pair]
-    return _DesignValue(designed.Designs.of(*pair, (params[0], params[1]), undefined), name)
+    return _CasadiDesignValue(designed.Designs.of(*pair, (params[0], params[1]), undefined), name)
 
 
 def check_name(name: str) -> None:
@@ -150,10 +150,10 @@ class NamedCallback(casadi.Callback):
         return dict(zip(names, sizes, strict=True))
 
 
-class _Value(NamedCallback):
+class _CasadiValue(NamedCallback):
     """(pose_a, pose_b) to the distance."""
 
-    def __init__(self, pair: ambient.Pair, name: str) -> None:
+    def __init__(self, pair: ambient.AmbientPair, name: str) -> None:
         poses = {"pose_a": POSE, "pose_b": POSE}
         super().__init__(pair, name, poses, {"distance": casadi.Sparsity.dense(1, 1)})
 
@@ -162,10 +162,10 @@ class _Value(NamedCallback):
 
     def get_jacobian(self, name: str, inputs: Any, outputs: Any, options: Any) -> Any:
         sizes = dict(zip(inputs, [POSE, POSE, casadi.Sparsity(1, 1)], strict=True))
-        return _Gradient(self.pair, name, sizes, self.jacobian_outputs(outputs), options)
+        return _CasadiGradient(self.pair, name, sizes, self.jacobian_outputs(outputs), options)
 
 
-class _Gradient(NamedCallback):
+class _CasadiGradient(NamedCallback):
     """(pose_a, pose_b, distance) to the rows of 16 derivatives by each pose."""
 
     def eval(self, given: Any) -> Any:
@@ -179,10 +179,10 @@ class _Gradient(NamedCallback):
         # Nothing depends on the value that comes in with the poses.
         for which in list(blocks)[2::3]:
             blocks[which] = casadi.Sparsity(blocks[which].shape)
-        return _Hessian(self.pair, name, sizes, blocks, options)
+        return _CasadiHessian(self.pair, name, sizes, blocks, options)
 
 
-class _Hessian(NamedCallback):
+class _CasadiHessian(NamedCallback):
     """The same and the rows to the blocks of 16 x 16, each row by each input."""
 
     def eval(self, given: Any) -> Any:
@@ -212,7 +212,7 @@ def _by_columns(matrix: Any) -> Any:
     return matrix.T.reshape(ambient.ENTRIES)
 
 
-class _DesignValue(NamedCallback):
+class _CasadiDesignValue(NamedCallback):
     """(A's parameters, B's, pose_a, pose_b) to the distance."""
 
     def __init__(self, designs: designed.Designs, name: str) -> None:

@@ -47,7 +47,7 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     array, shape () or (n,)
         Its gradient by a matrix is that of the distance at the nearest pose.
     """
-    pair = ambient.Pair.of(a, b, undefined)
+    pair = ambient.AmbientPair.of(a, b, undefined)
     poses = [_float64(pose_a, "pose_a"), _float64(pose_b, "pose_b")]
     lead = ambient.lead_of(*(pose.shape for pose in poses))
     return _function(pair)(*(jnp.broadcast_to(pose, (*lead, 4, 4)) for pose in poses))
@@ -129,7 +129,7 @@ def _alone(of: Any) -> Any:
 
 
 @lru_cache(maxsize=KEPT)
-def _function(pair: ambient.Pair) -> Any:
+def _function(pair: ambient.AmbientPair) -> Any:
     """The distance of a pair, with its rules of differentiation."""
 
     def called(of: Any, parts: int, *poses: Any) -> Any:

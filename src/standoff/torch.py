@@ -41,7 +41,7 @@ def distance(a: Body, b: Body, pose_a: Any, pose_b: Any, *, undefined: str = "na
     Tensor, shape () or (n,)
         Its gradient by a matrix is that of the distance at the nearest pose.
     """
-    pair = ambient.Pair.of(a, b, undefined)
+    pair = ambient.AmbientPair.of(a, b, undefined)
     _check(pose_a, "pose_a")
     _check(pose_b, "pose_b")
     lead = ambient.lead_of(tuple(pose_a.shape), tuple(pose_b.shape))
@@ -112,7 +112,7 @@ def _check(value: Any, name: str) -> None:
         )
 
 
-def _numbers(of: Any, poses: Any, pair: ambient.Pair) -> Any:
+def _numbers(of: Any, poses: Any, pair: ambient.AmbientPair) -> Any:
     found = of(pair, *(pose.detach().numpy() for pose in poses))
     # Copies: answers are read-only arrays, which PyTorch does not know.
     if isinstance(found, tuple):
@@ -129,7 +129,7 @@ class _Rule(torch.autograd.Function):  # type: ignore[misc]
         ctx.save_for_backward(pose_a, pose_b)
 
     @classmethod
-    def batched(cls, size: int, in_dims: Any, poses: Any, pair: ambient.Pair) -> Any:
+    def batched(cls, size: int, in_dims: Any, poses: Any, pair: ambient.AmbientPair) -> Any:
         return cls.apply(*_fronts(size, in_dims, poses), pair), 0
 
 
@@ -145,7 +145,7 @@ class _Value(_Rule):
     """(...) distances."""
 
     @staticmethod
-    def forward(pose_a: Any, pose_b: Any, pair: ambient.Pair) -> Any:
+    def forward(pose_a: Any, pose_b: Any, pair: ambient.AmbientPair) -> Any:
         return _numbers(ambient.value, (pose_a, pose_b), pair)
 
     @staticmethod
@@ -155,7 +155,7 @@ class _Value(_Rule):
         return moved[..., 0, :, :], moved[..., 1, :, :], None
 
     @staticmethod
-    def vmap(info: Any, in_dims: Any, pose_a: Any, pose_b: Any, pair: ambient.Pair) -> Any:
+    def vmap(info: Any, in_dims: Any, pose_a: Any, pose_b: Any, pair: ambient.AmbientPair) -> Any:
         return _Value.batched(info.batch_size, in_dims, (pose_a, pose_b), pair)
 
 
@@ -163,7 +163,7 @@ class _Gradient(_Rule):
     """(..., 2, 4, 4) gradients."""
 
     @staticmethod
-    def forward(pose_a: Any, pose_b: Any, pair: ambient.Pair) -> Any:
+    def forward(pose_a: Any, pose_b: Any, pair: ambient.AmbientPair) -> Any:
         return _numbers(ambient.first, (pose_a, pose_b), pair)[1]
 
     @staticmethod
@@ -173,7 +173,7 @@ class _Gradient(_Rule):
         return moved[..., 0, :, :], moved[..., 1, :, :], None
 
     @staticmethod
-    def vmap(info: Any, in_dims: Any, pose_a: Any, pose_b: Any, pair: ambient.Pair) -> Any:
+    def vmap(info: Any, in_dims: Any, pose_a: Any, pose_b: Any, pair: ambient.AmbientPair) -> Any:
         return _Gradient.batched(info.batch_size, in_dims, (pose_a, pose_b), pair)
 
 
@@ -181,7 +181,7 @@ class _Hessian(_Rule):
     """(..., 2, 4, 4, 2, 4, 4) Hessians, and no derivative of theirs."""
 
     @staticmethod
-    def forward(pose_a: Any, pose_b: Any, pair: ambient.Pair) -> Any:
+    def forward(pose_a: Any, pose_b: Any, pair: ambient.AmbientPair) -> Any:
         return _numbers(ambient.second, (pose_a, pose_b), pair)[2]
 
     @staticmethod
@@ -189,7 +189,7 @@ class _Hessian(_Rule):
         raise StandoffError(ambient.NO_THIRD)
 
     @staticmethod
-    def vmap(info: Any, in_dims: Any, pose_a: Any, pose_b: Any, pair: ambient.Pair) -> Any:
+    def vmap(info: Any, in_dims: Any, pose_a: Any, pose_b: Any, pair: ambient.AmbientPair) -> Any:
         return _Hessian.batched(info.batch_size, in_dims, (pose_a, pose_b), pair)
 
 

@@ -396,12 +396,12 @@ def test_no_inner_box_holds_a_small_hole() -> None:
 
 def test_a_boundary_of_many_cells_is_integrated_to_the_end() -> None:
     """However few points are allowed for all of it, as for a part of a thousand faces."""
-    from standoff.bodies.moments.cells import Cell, integrate
+    from standoff.bodies.moments.cells import MomentCell, integrate
 
     def values(_: object, t: np.ndarray, s: np.ndarray) -> np.ndarray:
         return np.exp(3.0 * (t[:, :, None, None] + s[:, None, :, None]))
 
-    found = integrate([Cell(values)] * 5_000, np.abs, 1e-9, 200_000)
+    found = integrate([MomentCell(values)] * 5_000, np.abs, 1e-9, 200_000)
     each = ((np.exp(3.0) - 1.0) / 3.0) ** 2
     assert found.values[0] == pytest.approx(5_000 * each, rel=1e-9)
     assert found.remainder[0] <= 1e-9 * found.values[0]

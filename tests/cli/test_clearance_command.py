@@ -17,7 +17,7 @@ import pytest
 
 import standoff as so
 from standoff.clearance.fits import load_fits
-from standoff.clearance.report import Nearest, Wanted, report_on
+from standoff.clearance.report import LeastGap, Wanted, report_on
 from standoff.clearance.tolerances import TOUCHING_PART
 from standoff.clearance.verdicts import Verdict, touching_tolerance, verdict_of
 from standoff.scene import SceneError
@@ -200,7 +200,7 @@ def test_min_is_proven_where_the_bound_of_the_boxes_is_not_enough(
 
 def test_what_is_required_is_asked_of_the_lower_bound() -> None:
     answer = answer_at(0.5)
-    found = {("a", "b"): Nearest(answer, 0.0, 0.25, 1)}
+    found = {("a", "b"): LeastGap(answer, 0.0, 0.25, 1)}
     for least, holds in ((0.2, True), (0.3, False)):
         report = report_on(answer_world(), found, {}, Wanted(least))
         assert (not report.failures) is holds

@@ -12,7 +12,7 @@ from frameworks.cases import APART, BOX, ELLIPSOID, INSIDE, LENS, LOST, STACKED,
 from standoff.errors import DerivativeWarning, StandoffError
 from standoff.frameworks import ambient
 
-PAIR = ambient.Pair.of(LENS, ELLIPSOID, "nan")
+PAIR = ambient.AmbientPair.of(LENS, ELLIPSOID, "nan")
 
 
 def at_nearest(matrices: np.ndarray) -> float:
@@ -58,7 +58,7 @@ def test_many_rows_are_single_ones(rng: np.random.Generator) -> None:
 def test_a_planar_body_s_gradient_follows_motions_in_the_plane() -> None:
     arc = so.geometry.ConicArc
     ellipse = so.shapes.planar_loop([arc([0, 0], [1.0, 0], [0, 0.5])])
-    pair = ambient.Pair.of(ellipse, ellipse, "nan")
+    pair = ambient.AmbientPair.of(ellipse, ellipse, "nan")
 
     def at(t: float) -> np.ndarray:
         return pose(np.array([0, 0, 0.4 + t + t * t, 3.0 - t * t, 0.5 + 2 * t, 0]))
@@ -81,7 +81,7 @@ def test_a_planar_body_s_gradient_follows_motions_in_the_plane() -> None:
 
 
 def test_undefined_derivatives_are_nan_with_a_warning() -> None:
-    pair = ambient.Pair.of(BOX, BOX, "nan")
+    pair = ambient.AmbientPair.of(BOX, BOX, "nan")
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         close(ambient.value(pair, np.eye(4), STACKED), 0.5, 1e-12)
@@ -104,7 +104,7 @@ def test_undefined_derivatives_are_nan_with_a_warning() -> None:
 
 
 def test_or_an_error() -> None:
-    pair = ambient.Pair.of(BOX, BOX, "raise")
+    pair = ambient.AmbientPair.of(BOX, BOX, "raise")
     for poses in (STACKED, np.array([STACKED, STACKED])):
         close(ambient.value(pair, np.eye(4), poses), np.full(poses.shape[:-2], 0.5), 1e-12)
         with pytest.raises(
@@ -115,9 +115,9 @@ def test_or_an_error() -> None:
 
 def test_what_cannot_serve_is_refused() -> None:
     with pytest.raises(StandoffError, match="undefined = 'zero': give 'nan' or 'raise'"):
-        ambient.Pair.of(BOX, BOX, "zero")
+        ambient.AmbientPair.of(BOX, BOX, "zero")
     with pytest.raises(TypeError, match="b = 3 is not a body"):
-        ambient.Pair.of(BOX, 3, "nan")  # type: ignore[arg-type]
+        ambient.AmbientPair.of(BOX, 3, "nan")  # type: ignore[arg-type]
     with pytest.raises(StandoffError, match=r"pose_b has the shape \(3, 3\)"):
         ambient.value(PAIR, np.eye(4), np.eye(3))
     with pytest.raises(StandoffError, match="the same number of both"):

@@ -34,7 +34,7 @@ def test_gradients_are_those_of_the_shape_and_of_the_poses(where: str) -> None:
         close(part, np.array(rate), 0.0)
     for part, rate in zip(by, differences(where), strict=True):
         close(part, rate, 1e-9)
-    poses = ambient.first(ambient.Pair(a.body, b.body, "nan"), *POSES[where]).gradient
+    poses = ambient.first(ambient.AmbientPair(a.body, b.body, "nan"), *POSES[where]).gradient
     close(np.array(found.gradients[3:]), poses, 0.0)
 
 

@@ -14,7 +14,7 @@ from shares import only
 from standoff.robots.joints import JointKind
 from standoff.robots.motion_bounds import bends, least_way_along, seen_from
 from standoff.robots.motions import motions_of
-from standoff.robots.sight import Apart, Middle, Sight, closing, gains
+from standoff.robots.sight import Middle, Separations, Sight, closing, gains
 
 KINDS = (
     JointKind.HINGE,
@@ -205,7 +205,7 @@ def test_the_bound_is_exact_of_one_hinge() -> None:
 
 def on_hinges(
     axes: np.ndarray, ends: np.ndarray, normal: np.ndarray, h: np.ndarray
-) -> tuple[Middle, Apart]:
+) -> tuple[Middle, Separations]:
     """A point on a chain of hinges that start at ``ends`` and end in the last of them,
     away from a half-space with an inward normal."""
     places = [np.eye(4) for _ in axes]
@@ -224,7 +224,7 @@ def on_hinges(
     wall_is_b = bool(middle.reaches.only_a[0])
     normals = normal[None] if wall_is_b else -normal[None]
     unknown = np.zeros(1)
-    return middle, Apart(unknown, unknown, unknown, normals, np.array([True]))
+    return middle, Separations(unknown, unknown, unknown, normals, np.array([True]))
 
 
 def turned_by(axis: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:

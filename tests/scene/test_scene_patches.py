@@ -20,7 +20,7 @@ from standoff.geometry import (
 )
 from standoff.scene import Scene, SceneError
 from standoff.scene.patches import PATCHES, read_patches
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 
 LoadText = Callable[[str], Scene]
 
@@ -70,7 +70,7 @@ CASES: list[tuple[dict[str, Any], Callable[[], Surface]]] = [
 def test_a_patch_is_the_one_that_python_builds(
     content: dict[str, Any], build: Callable[[], Surface]
 ) -> None:
-    (mine,), theirs = read_patches(Table({"patches": [content]})), build()
+    (mine,), theirs = read_patches(SceneTable({"patches": [content]})), build()
     assert type(mine) is type(theirs)
     assert mine.domain == theirs.domain
     u0, u1, v0, v1 = theirs.domain

@@ -27,7 +27,7 @@ from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.kernels.dynamics import servo_arrays as V
 from standoff.kernels.entries import servo as entries
 from standoff.servo import Ended, Servo
-from standoff.servo.exchange import Box
+from standoff.servo.exchange import Mailbox
 from standoff.servo.loop_port import LoopPort
 from standoff.servo.statistics import end_of_bin, spread_of
 from standoff.simulation import Fault
@@ -270,7 +270,7 @@ def test_a_fault_is_taken_in_though_the_device_is_held_up(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The loop goes on for ten ticks while the device's thread has just looked at it."""
-    inbox, outbox = Box(K.N_READING), Box(V.OUT_HEADER + K.C_HELD + 6)
+    inbox, outbox = Mailbox(K.N_READING), Mailbox(V.OUT_HEADER + K.C_HELD + 6)
     port = LoopPort(inbox, outbox, V.OUT_HEADER, PERIOD, 1.0)
     seen, told = [], np.zeros(V.OUT_HEADER + K.C_HELD + 6)
 
@@ -301,7 +301,7 @@ def test_a_fault_is_taken_in_though_the_device_is_held_up(
 
 def test_a_fault_stays_until_it_is_taken_in() -> None:
     """A good reading that comes before the loop's next tick does not hide the bad one."""
-    inbox, outbox = Box(K.N_READING), Box(V.OUT_HEADER + K.C_HELD + 6)
+    inbox, outbox = Mailbox(K.N_READING), Mailbox(V.OUT_HEADER + K.C_HELD + 6)
     port = LoopPort(inbox, outbox, V.OUT_HEADER, PERIOD, 1.0)
     told = np.zeros(V.OUT_HEADER + K.C_HELD + 6)
     told[V.OUT_HEADER + K.C_ON_DEVICE] = 3.0
@@ -320,7 +320,7 @@ def test_a_fault_stays_until_it_is_taken_in() -> None:
 
 def test_rows_are_never_torn() -> None:
     """A writer that goes round as fast as it can, beside readers that compare every number."""
-    box, stop = Box(64), threading.Event()
+    box, stop = Mailbox(64), threading.Event()
 
     def write() -> None:
         number = 0.0
@@ -344,7 +344,7 @@ def test_rows_are_never_torn() -> None:
 
 def test_a_row_that_is_written_over_is_not_read() -> None:
     """What the race would be: the number moves on while the row is copied."""
-    box = Box(4)
+    box = Mailbox(4)
     row = np.zeros(4)
     assert box.newest_row() is None
     for k in range(1, 2 * V.BOX_ROWS):

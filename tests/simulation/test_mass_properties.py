@@ -13,8 +13,8 @@ import solids
 import standoff as so
 from solids import Solid
 from standoff.bodies.moments import boundary
-from standoff.bodies.moments.cells import Cell
-from standoff.bodies.moments.flux import Frame
+from standoff.bodies.moments.cells import MomentCell
+from standoff.bodies.moments.flux import IntegralFrame
 from standoff.geometry import (
     BezierPatch,
     ConicArc,
@@ -146,7 +146,7 @@ def test_a_face_that_is_missed_or_counted_twice_shows_in_the_bound(
     """The integrals that close the boundary find it, whatever the volume says."""
     whole = boundary.face_cells
 
-    def wrong(body: so.Body, face: int, frame: Frame) -> list[Cell]:
+    def wrong(body: so.Body, face: int, frame: IntegralFrame) -> list[MomentCell]:
         return whole(body, face, frame) * (counted if face == 0 else 1)
 
     monkeypatch.setattr(boundary, "face_cells", wrong)

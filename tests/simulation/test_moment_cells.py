@@ -13,16 +13,18 @@ import pytest
 from numpy.typing import NDArray
 
 import standoff as so
-from standoff.bodies.moments.cells import BATCH_NODES, Cell, evaluated, integrate, rule
+from standoff.bodies.moments.cells import BATCH_NODES, MomentCell, evaluated, integrate, rule
 from standoff.bodies.moments.face_cells import face_cells
-from standoff.bodies.moments.flux import COLUMNS, Frame
+from standoff.bodies.moments.flux import COLUMNS, IntegralFrame
 
 Array = NDArray[np.float64]
 Plain = Callable[[Array, Array], Array]
 
 
-def cell(f: Plain, low: tuple[float, float] = (0, 0), high: tuple[float, float] = (1, 1)) -> Cell:
-    return Cell(lambda _, t, s: f(t[:, :, None], s[:, None, :])[..., None], low, high)
+def cell(
+    f: Plain, low: tuple[float, float] = (0, 0), high: tuple[float, float] = (1, 1)
+) -> MomentCell:
+    return MomentCell(lambda _, t, s: f(t[:, :, None], s[:, None, :])[..., None], low, high)
 
 
 @pytest.mark.parametrize("level", [3, 4, 5, 6])
@@ -51,9 +53,9 @@ def test_what_needs_nodes_along_one_parameter_is_seen_along_it() -> None:
 def test_cells_evaluated_together_are_those_evaluated_alone() -> None:
     """Of several functions and rules, in any order, more than a batch holds."""
     body = so.shapes.cylinder(1.0, 2.0)
-    frame = Frame(np.array([0.1, 0.0, 0.2]), 3.0, 0.2)
+    frame = IntegralFrame(np.array([0.1, 0.0, 0.2]), 3.0, 0.2)
     strips = [part for k in range(body.n_faces) for part in face_cells(body, k, frame)]
-    other = Cell(
+    other = MomentCell(
         lambda _, t, s: np.cos(np.arange(COLUMNS) * t[:, :, None, None] * s[:, None, :, None])
     )
     cells = [
@@ -113,7 +115,7 @@ def test_halves_cover_a_cell_once() -> None:
 
 
 def test_columns_without_a_size_are_not_refined_for() -> None:
-    wild = Cell(
+    wild = MomentCell(
         lambda _, t, s: np.stack(
             [np.ones((1, t.size, s.size)), np.cos(900 * np.add.outer(t[0], s[0]))[None]], axis=-1
         )

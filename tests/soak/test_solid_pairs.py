@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from standoff.solids.asked import Asked
+from standoff.solids.asked import QueryOptions
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.status import Status
 from standoff_studies.soak import (
@@ -139,7 +139,7 @@ def asked():
         key = a.name, pose_a.tobytes(), pose_b.tobytes()
         if key not in known:
             # few are enough for a true interval, and for these poses nearly always for a proof
-            known[key] = spatial_distance(a, b, pose_a, pose_b, Asked(deadline=5000))
+            known[key] = spatial_distance(a, b, pose_a, pose_b, QueryOptions(deadline=5000))
         return known[key]
 
     return ask
@@ -305,7 +305,7 @@ def test_what_is_called_a_continuum_before_its_proof_is_at_the_distance(deadline
     told = []
 
     def ask(*pair):
-        told.append(spatial_distance(*pair, Asked(deadline=deadline)))
+        told.append(spatial_distance(*pair, QueryOptions(deadline=deadline)))
         return told[-1]
 
     verdict, lines = judged((a, b, (first, second), tuple(p[17:18] for p in poses)), ask)

@@ -15,7 +15,7 @@ from standoff.clearance.fits import Fit
 from standoff.clearance.page import page_of
 from standoff.clearance.picture import pairs_legend, undecided_gap
 from standoff.clearance.report import (
-    Looked,
+    Instants,
     Report,
     Wanted,
     bounds_of,
@@ -109,7 +109,7 @@ def test_the_page_names_and_draws_the_parts(
 ) -> None:
     report = reported(found, Wanted(0.05, None))
     file = AssemblyFile(Path("assembly.step"), "A bolt in a plate", "mm", (), PLACES)
-    text = page_of(file, report, Looked(0.0, 0.0, 1))
+    text = page_of(file, report, Instants(0.0, 0.0, 1))
     for part in (
         "CONTAINED",
         "A bolt in a plate",
@@ -140,7 +140,7 @@ def test_an_undecided_pair_is_told_as_one(tmp_path: Path, monkeypatch: pytest.Mo
     assert labels[0].startswith("1  plate - bolt: undecided, gap at most ")
     assert labels[1].startswith("2  bolt - ring: gap 0.2 mm")
     file = AssemblyFile(Path("assembly.step"), "A pin", "mm", (), PLACES)
-    text = page_of(file, report, Looked(0.0, 0.0, 1))
+    text = page_of(file, report, Instants(0.0, 0.0, 1))
     (tmp_path / "page.html").write_text(text)
     assert (
         "No clearance is proven for all pairs: it is not decided whether these meet: plate - bolt"

@@ -17,7 +17,7 @@ from standoff.clearance.assembly_picture import assembly_figure
 from standoff.clearance.checked_pairs import Scope, check
 from standoff.clearance.fits import Fit
 from standoff.clearance.page import page_of
-from standoff.clearance.report import Looked, Report, Wanted
+from standoff.clearance.report import Instants, Report, Wanted
 from standoff.clearance.verdicts import Verdict
 from standoff.solids import Solid
 from standoff_studies.soak.solid_parts import bolt, bracket, hollow, plate, ring
@@ -190,7 +190,7 @@ def test_the_page_tells_of_cavities_and_has_the_files_colours() -> None:
     places = {name: so.Pose(np.eye(3), at) for name, (_, at) in assembly.parts.items()}
     blue = (0.0, 0.0, 1.0)
     file = AssemblyFile(Path("a.step"), "A bead", "mm", (), places, {"bead": blue})
-    assert "<br>bead, in a cavity</td>" in page_of(file, report, Looked(0.0, 0.0, 1))
+    assert "<br>bead, in a cavity</td>" in page_of(file, report, Instants(0.0, 0.0, 1))
     figure = assembly_figure(report, places, "mm", file.colours)
     patches = {
         patch.get_label(): patch.get_facecolor() for patch in figure.legends[0].get_patches()

@@ -223,7 +223,7 @@ def test_what_a_hard_search_proves_loosely_is_true(case, rng) -> None:
         pose, found = drawn_apart(a, b, away, rng)
         turn = pose[:9].reshape(3, 3)
         factor = 1.5 if case == "told too far" else 1.0
-        best, minima = minimum.started(minimum.Sought(1e-6 * size), size, 0.0)
+        best, minima = minimum.started(minimum.SearchOptions(1e-6 * size), size, 0.0)
         best[C.LEAST], best[C.BEYOND] = factor * found.upper, 0.0
         best[C.LEAF_A : C.AT + 4] = found.best[1:7]
         best[C.OPEN], best[C.N_OPEN], best[C.MOST_OPEN] = 7.0, 2.0, 0.0
@@ -268,7 +268,7 @@ def test_what_a_hard_search_proves_loosely_is_true(case, rng) -> None:
 
 def drawn_apart(
     a: Solid, b: Solid, away: float, rng: np.random.Generator
-) -> tuple[Array, minimum.Found]:
+) -> tuple[Array, minimum.LeastFound]:
     """A pose of B, near A, and what is found of it."""
     while True:
         turn, move = Rotation.random(random_state=rng), rng.normal(size=3)

@@ -12,7 +12,7 @@ from families.solid_shapes import bracket, peg, ring
 from standoff.kernels.entries import tracked_solids as T
 from standoff.kernels.solids import front_rows as F
 from standoff.solids import Solid, SolidTracker
-from standoff.solids.tracked.front import Front, room_for
+from standoff.solids.tracked.front import KeptFront, room_for
 from standoff.tracking.status import Status
 
 Array = np.ndarray
@@ -41,7 +41,7 @@ def way_between(first: Array, last: Array) -> list[Array]:
     ]
 
 
-def row_of_frame(tracker: SolidTracker, front: Front, last: Array) -> Array:
+def row_of_frame(tracker: SolidTracker, front: KeptFront, last: Array) -> Array:
     """What the kernel tells of a frame with B at a pose, from a front on."""
     told = room_for(1)
     flat = np.concatenate([last[:3, :3].ravel(), last[:3, 3]])

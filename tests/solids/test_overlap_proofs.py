@@ -15,7 +15,7 @@ from standoff.kernels.entries.solids import nearest_in_leaves
 from standoff.kernels.solids import spatial_progress as C
 from standoff.solids.parting import least_way_out
 from standoff.solids.spatial.contact import MOST_LOCAL
-from standoff.solids.spatial.minimum import Sought, started
+from standoff.solids.spatial.minimum import SearchOptions, started
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.points import depth_beside, signed_distances
 from standoff.solids.spatial.solid_model import SolidModel
@@ -93,7 +93,7 @@ def test_no_pieces_are_told_to_be_parted_that_are_not(
         pair = PlacedPair(a, b, so.Pose.identity(), pose)
         row = np.zeros(C.MINIMUM_REALS)
         row[0], row[1:3], row[3:7], row[C.NORMAL : C.NORMAL + 3] = d, leaves, at, n
-        best, _ = started(Sought(1e-10 * pair.size, above=1.0), pair.size, 1.0)
+        best, _ = started(SearchOptions(1e-10 * pair.size, above=1.0), pair.size, 1.0)
         lists = best, np.empty(C.MINIMUM_REALS * MOST_LOCAL)
         counts = np.zeros(8, dtype=np.int64)
         by = pieces_parted((a.packed, b.packed), pair.relative, row, lists, counts)

@@ -17,7 +17,7 @@ from standoff.kernels.solids.planar_layout import Piece, Potential
 from standoff.kernels.solids.planar_pieces import apart, halves, jet_at, node_piece
 from standoff.kernels.solids.planar_ranges import greatest, value_at
 from standoff.kernels.solids.torus_potential import from_circle
-from standoff.solids.planar.outline import Outline
+from standoff.solids.planar.outline import PlanarOutline
 
 
 def test_the_distance_from_a_circle_has_no_cancellation() -> None:
@@ -61,12 +61,12 @@ def bound_and_samples(arrays, node, potential, sign, parts, n):  # type: ignore[
     return greatest(outline, piece, phi, sign, best), seen, out
 
 
-def leaf_nodes(outline: Outline) -> list[int]:
+def leaf_nodes(outline: PlanarOutline) -> list[int]:
     rows = outline.node_ints.reshape(-1, P.N_NODE_INT)
     return [int(k) for k in np.flatnonzero(rows[:, P.LEAF] >= 0)]
 
 
-def attacked(rng: np.random.Generator, outline: Outline, tries: int) -> tuple[int, float]:
+def attacked(rng: np.random.Generator, outline: PlanarOutline, tries: int) -> tuple[int, float]:
     """How many bounds are tight to 1 % of what the samples span, and the worst overshoot."""
     nodes, tight = leaf_nodes(outline), 0
     worst = -math.inf

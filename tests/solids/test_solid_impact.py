@@ -15,8 +15,8 @@ from draws import draws
 from families.solid_shapes import ball, bracket, peg, prism, socket, tube
 from standoff.geometry import ConicArc, Line
 from standoff.impact import ImpactStatus
-from standoff.impact.moment import Box
-from standoff.impact.solids import Asked, Lipschitz, SolidSearch
+from standoff.impact.moment import BodyBox
+from standoff.impact.solids import InstantAnswer, Lipschitz, SolidSearch
 from standoff.motion import ConstantTwist, Fixed, Screw
 from standoff.solids import distance
 
@@ -181,13 +181,15 @@ class Unproven:
     def __init__(self, lower: float) -> None:
         self.lower = lower
 
-    def start(self, pose_a: so.Pose, pose_b: so.Pose) -> Asked:
+    def start(self, pose_a: so.Pose, pose_b: so.Pose) -> InstantAnswer:
         answer = distance(SLOT, ball(0.3), pose_a, pose_b)
         if pose_b.translation[0] > 1.2:
             answer = replace(answer, lower_bound=self.lower, status=so.Status.WITHIN)
-        return Asked(answer)
+        return InstantAnswer(answer)
 
-    def step(self, before: Asked, *poses: so.Pose) -> tuple[Asked, so.solids.SolidProximity]:
+    def step(
+        self, before: InstantAnswer, *poses: so.Pose
+    ) -> tuple[InstantAnswer, so.solids.SolidProximity]:
         now = self.start(*poses)
         return now, now.proximity
 
@@ -195,7 +197,7 @@ class Unproven:
 @pytest.mark.parametrize("lower", [-np.inf, 1e-10])
 def test_what_is_not_proven_is_not_told_to_graze(lower: float) -> None:
     paths = Fixed(STILL), going(at(1.0, 1.0, 1.5), 0.25, 0, 0.25)
-    boxes = Box(SLOT), Box(ball(0.3))
+    boxes = BodyBox(SLOT), BodyBox(ball(0.3))
     search = SolidSearch(Unproven(lower), boxes, 5.0, paths, (0.0, 1e-9, 1000))
     found = search.run(0.0, 2.7)
     assert found.status is ImpactStatus.UNDECIDED
@@ -208,11 +210,13 @@ class Loose:
     def __init__(self, upper: float) -> None:
         self.upper = upper
 
-    def start(self, pose_a: so.Pose, pose_b: so.Pose) -> Asked:
+    def start(self, pose_a: so.Pose, pose_b: so.Pose) -> InstantAnswer:
         answer = distance(SLOT, ball(0.3), pose_a, pose_b)
-        return Asked(replace(answer, lower_bound=0.0, upper_bound=self.upper, slack=1e-4))
+        return InstantAnswer(replace(answer, lower_bound=0.0, upper_bound=self.upper, slack=1e-4))
 
-    def step(self, before: Asked, *poses: so.Pose) -> tuple[Asked, so.solids.SolidProximity]:
+    def step(
+        self, before: InstantAnswer, *poses: so.Pose
+    ) -> tuple[InstantAnswer, so.solids.SolidProximity]:
         now = self.start(*poses)
         return now, now.proximity
 
@@ -220,7 +224,9 @@ class Loose:
 @pytest.mark.parametrize(("upper", "status"), [(1.9e-4, "GRAZING"), (2.1e-4, "UNDECIDED")])
 def test_solids_graze_where_they_are_near_but_for_their_slack(upper: float, status: str) -> None:
     paths = Fixed(STILL), Fixed(at(1.0, 1.0, 1.5))
-    search = SolidSearch(Loose(upper), (Box(SLOT), Box(ball(0.3))), 0.0, paths, (0.0, 1e-9, 1000))
+    search = SolidSearch(
+        Loose(upper), (BodyBox(SLOT), BodyBox(ball(0.3))), 0.0, paths, (0.0, 1e-9, 1000)
+    )
     assert search.run(0.0, 1.0).status.name == status
 
 

@@ -18,7 +18,7 @@ from standoff.kernels.solids import spatial_layout as S
 from standoff.solids import OpenPair, Solid, distance
 from standoff.solids.of_pieces import turned
 from standoff.solids.spatial import distance as spatial_distance_module
-from standoff.solids.spatial.minimum import Sought
+from standoff.solids.spatial.minimum import SearchOptions
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.tracking.status import Status
@@ -50,7 +50,7 @@ def test_the_distance_of_a_contact_is_that_of_its_own_points(
     pair = PlacedPair(
         as_model(SLOT), as_model(ball(0.5)), STILL, so.Pose(STRAIGHT, (1.0, 0.5, 1.5))
     )
-    found = pair.least((S.OUTSIDE, S.OUTSIDE), Sought(1e-9, on_meeting=False))
+    found = pair.least((S.OUTSIDE, S.OUTSIDE), SearchOptions(1e-9, on_meeting=False))
     crossing, touching = found.best.copy(), found.best.copy()
     crossing[0], touching[0] = 0.0, 8e-11
     found = replace(found, upper=0.0, minima=np.array([crossing, touching]), best=crossing)

@@ -7,7 +7,7 @@ import pytest
 
 from families.solid_shapes import BRACKET, ball, bolt, bracket, peg, ring, socket, tube
 from standoff.solids import Solid
-from standoff.solids.asked import Asked
+from standoff.solids.asked import QueryOptions
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -156,7 +156,9 @@ def test_the_gradient_is_that_of_differences() -> None:
 
 
 def test_few_evaluations_leave_a_true_interval() -> None:
-    answer = spatial_distance(HOLE, PEG, None, (about_x(1e-5), (1e-6, 0, 0)), Asked(deadline=5))
+    answer = spatial_distance(
+        HOLE, PEG, None, (about_x(1e-5), (1e-6, 0, 0)), QueryOptions(deadline=5)
+    )
     whole = spatial_distance(HOLE, PEG, None, (about_x(1e-5), (1e-6, 0, 0)))
     assert answer.status is Status.DEADLINE
     assert not answer.certified
@@ -179,7 +181,7 @@ def test_what_is_a_little_farther_than_asked_takes_no_more_than_its_distance(sha
     bore, pin = tube(2.25, 5.0, -4.0, 4.0), peg(2.14, -4.0, 8.0)
     whole = spatial_distance(bore, pin)
     checked(whole, 0.11)
-    far = spatial_distance(bore, pin, asked=Asked(within=share * 0.11))
+    far = spatial_distance(bore, pin, asked=QueryOptions(within=share * 0.11))
     assert far.status is Status.FAR
     assert share * 0.11 <= far.lower_bound <= 0.11
     assert far.counts.evaluations <= 1.2 * whole.counts.evaluations

@@ -90,7 +90,7 @@ def negative_tolerance(a: Solid, b: Solid, pose: np.ndarray, beyond: float) -> f
     """The bound that the search claims where it is asked for one beyond the distance by `beyond`,
     which is false: the least that stayed open."""
     size = a.size + b.size
-    best, minima = minimum.started(minimum.Sought(-beyond, 30_000), size, 0.0)
+    best, minima = minimum.started(minimum.SearchOptions(-beyond, 30_000), size, 0.0)
     best[C.MEETING] = 0.0
     counts = np.zeros(8, dtype=np.int64)
     room = minimum.scratch(0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.subjects.shaped_body import ShapedBody
 
@@ -34,8 +34,8 @@ TABLES: Mapping[str, Mapping[str, Any]] = {
 """A table of each shape whose numbers can change, as a scene has it."""
 
 
-def table_of(shape: str) -> Table:
-    return Table({"shape": shape, **TABLES[shape]}, path="bodies.tool")
+def table_of(shape: str) -> SceneTable:
+    return SceneTable({"shape": shape, **TABLES[shape]}, path="bodies.tool")
 
 
 def shaped_of(shape: str, *whats: str) -> ShapedBody:

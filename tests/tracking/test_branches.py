@@ -14,7 +14,7 @@ from standoff.tracking.branches import (
     Branch,
     BranchCounts,
     Branches,
-    Carried,
+    BranchPlace,
     Change,
     End,
 )
@@ -31,12 +31,12 @@ def begun(*found: tuple[float, float]) -> Branches[float]:
     return Branches[float]().joined(found, Birth.START, same).settled(TIE)
 
 
-def to(places: dict[int, Carried[float]]):
+def to(places: dict[int, BranchPlace[float]]):
     return lambda branch: places[branch.key]
 
 
-def still(branch: Branch[float]) -> Carried[float]:
-    return Carried(branch.value, branch.state)
+def still(branch: Branch[float]) -> BranchPlace[float]:
+    return BranchPlace(branch.value, branch.state)
 
 
 def values(branches: Branches[float]) -> list[float]:
@@ -63,7 +63,7 @@ def test_the_first_of_equal_minima_is_active():
 )
 def test_another_wins_when_it_is_less_by_more_than_the_tie(other, active):
     branches = begun((1.0, 0.0), (1.0, 5.0))
-    values = {0: Carried(1.0, 0.0), 1: Carried(other, 5.0)}
+    values = {0: BranchPlace(1.0, 0.0), 1: BranchPlace(other, 5.0)}
     assert branches.carried(to(values), same).settled(TIE).active == active
 
 
@@ -71,7 +71,7 @@ def test_two_minima_that_change_places_within_the_tie_make_one_switch():
     """There and back by a little: the one that has won stays."""
     branches, active = begun((1.0, 0.0), (1.0, 5.0)), []
     for offset in (0.4, -0.4, -1.5, -0.4, 0.4, 0.9, -0.9, 1.5):
-        values = {0: Carried(1.0, 0.0), 1: Carried(1.0 + offset * TIE, 5.0)}
+        values = {0: BranchPlace(1.0, 0.0), 1: BranchPlace(1.0 + offset * TIE, 5.0)}
         branches = branches.carried(to(values), same).settled(TIE)
         active.append(branches.active)
     assert active == [0, 0, 1, 1, 1, 1, 1, 0]
@@ -80,7 +80,7 @@ def test_two_minima_that_change_places_within_the_tie_make_one_switch():
 def test_of_two_that_meet_the_one_that_has_moved_less_stays():
     for moved, stays in (((0.1, 0.2), 0), ((0.2, 0.1), 1), ((0.1, 0.1), 0)):
         branches = begun((1.0, 0.0), (2.0, 5.0))
-        meeting = {k: Carried(1.5, 3.0, moved[k]) for k in (0, 1)}
+        meeting = {k: BranchPlace(1.5, 3.0, moved[k]) for k in (0, 1)}
         after = branches.carried(to(meeting), same).settled(TIE)
         assert [b.key for b in after] == [stays]
         assert after.changes == (Change(1 - stays, End.MERGED, stays),)
@@ -93,16 +93,16 @@ def test_merging_hands_the_answer_over_though_a_third_is_within_the_tie():
     branches = begun((1.0, 0.0), (1.0, 1.0), (1.0, 5.0))
     assert branches.active == 0
     meeting = {
-        0: Carried(1.0, 1.0, 0.3),
-        1: Carried(1.0, 1.0, 0.1),
-        2: Carried(1.0 - 0.5 * TIE, 5.0),
+        0: BranchPlace(1.0, 1.0, 0.3),
+        1: BranchPlace(1.0, 1.0, 0.1),
+        2: BranchPlace(1.0 - 0.5 * TIE, 5.0),
     }
     assert branches.carried(to(meeting), same).settled(TIE).active == 1
 
 
 def test_many_that_meet_leave_one():
     branches = begun(*((float(k), float(k)) for k in range(5)))
-    after = branches.carried(lambda b: Carried(0.0, 7.0, abs(b.state - 2.2)), same).settled(TIE)
+    after = branches.carried(lambda b: BranchPlace(0.0, 7.0, abs(b.state - 2.2)), same).settled(TIE)
     assert [b.key for b in after] == [2]
     assert [change[:2] for change in after.changes] == [(k, End.MERGED) for k in (0, 1, 3, 4)]
     assert {change.into for change in after.changes} == {2}
@@ -111,7 +111,7 @@ def test_many_that_meet_leave_one():
 def test_a_jump_ends_a_branch_and_begins_one():
     branches = begun((1.0, 0.0), (2.0, 5.0))
     after = branches.carried(
-        to({0: Carried(3.0, 9.0, 0.0, End.JUMPED), 1: Carried(2.0, 5.0)}), same
+        to({0: BranchPlace(3.0, 9.0, 0.0, End.JUMPED), 1: BranchPlace(2.0, 5.0)}), same
     )
     assert [b.key for b in after] == [1, 2]
     assert after.changes == (Change(2, Birth.JUMP), Change(0, End.JUMPED, 2))
@@ -122,7 +122,7 @@ def test_a_jump_ends_a_branch_and_begins_one():
 def test_a_jump_onto_a_minimum_that_is_followed_begins_none():
     branches = begun((1.0, 0.0), (2.0, 5.0))
     after = branches.carried(
-        to({0: Carried(2.0, 5.0, 0.0, End.JUMPED), 1: Carried(2.0, 5.0)}), same
+        to({0: BranchPlace(2.0, 5.0, 0.0, End.JUMPED), 1: BranchPlace(2.0, 5.0)}), same
     )
     assert [b.key for b in after] == [1]
     assert after.changes == (Change(0, End.JUMPED, 1),)
@@ -131,7 +131,7 @@ def test_a_jump_onto_a_minimum_that_is_followed_begins_none():
 
 def test_two_jumps_onto_one_minimum_begin_one():
     branches = begun((1.0, 0.0), (2.0, 5.0))
-    after = branches.carried(lambda _: Carried(3.0, 9.0, 0.0, End.JUMPED), same).settled(TIE)
+    after = branches.carried(lambda _: BranchPlace(3.0, 9.0, 0.0, End.JUMPED), same).settled(TIE)
     assert [b.key for b in after] == [2]
     assert [change.reason for change in after.changes] == [Birth.JUMP, End.JUMPED, End.JUMPED]
     assert {change.into for change in after.changes[1:]} == {2}
@@ -142,9 +142,9 @@ def test_what_leaves_its_minimum_and_what_is_lost_ends():
     after = branches.carried(
         to(
             {
-                0: Carried(1.0, 0.0, 0.0, End.LEFT),
-                1: Carried(np.nan, 5.0),
-                2: Carried(3.0, 8.0),
+                0: BranchPlace(1.0, 0.0, 0.0, End.LEFT),
+                1: BranchPlace(np.nan, 5.0),
+                2: BranchPlace(3.0, 8.0),
             }
         ),
         same,
@@ -194,12 +194,12 @@ def test_every_reason_is_counted_by_its_name_and_has_a_sentence():
     assert (counts.born, counts.ended) == (len(Birth), len(End))
 
 
-def drawn(rng: np.random.Generator, n: int) -> dict[int, Carried[float]]:
+def drawn(rng: np.random.Generator, n: int) -> dict[int, BranchPlace[float]]:
     """Where branches go, some of them to one place."""
     places = np.round(rng.uniform(0.0, 3.0, n))
     ends = rng.choice(np.array([None, None, None, End.JUMPED, End.LEFT]), n)
     return {
-        k: Carried(float(10.0 - x), float(x), float(rng.integers(3)), ends[k])
+        k: BranchPlace(float(10.0 - x), float(x), float(rng.integers(3)), ends[k])
         for k, x in enumerate(places.tolist())
     }
 
@@ -223,7 +223,8 @@ def test_two_branches_may_change_names(rng):
     for _ in range(200):
         moved = rng.permutation(3).astype(float)  # no two alike, so that age does not decide
         ways = {
-            k: Carried(float(rng.integers(3)), float(rng.integers(3)), moved[k]) for k in range(3)
+            k: BranchPlace(float(rng.integers(3)), float(rng.integers(3)), moved[k])
+            for k in range(3)
         }
         other = {0: ways[1], 1: ways[0], 2: ways[2]}
         one = begun((1.0, 10.0), (2.0, 11.0), (3.0, 12.0)).carried(to(ways), same)
@@ -245,7 +246,7 @@ def test_the_order_in_which_minima_are_found_does_not_matter():
 def test_branches_are_a_value():
     branches = begun((1.0, 0.0), (2.0, 5.0))
     before = branches.branches, branches.active, branches.changes, branches.counts
-    branches.carried(lambda _: Carried(0.0, 0.0), same).ended([0], End.LEFT).settled(TIE)
+    branches.carried(lambda _: BranchPlace(0.0, 0.0), same).ended([0], End.LEFT).settled(TIE)
     branches.joined([(0.0, 8.0)], Birth.PROOF, same)
     assert (branches.branches, branches.active, branches.changes, branches.counts) == before
     with pytest.raises(AttributeError):
@@ -279,7 +280,7 @@ def test_a_double_well_is_followed_as_its_minima_come_and_go():
                 x -= 0.02 * (b + 2.0 * c * x + 4.0 * e * x**3)
             for _ in range(5):
                 x -= f.deriv()(x) / f.deriv(2)(x)
-            return Carried(float(f(x)), float(x), abs(x - branch.state))
+            return BranchPlace(float(f(x)), float(x), abs(x - branch.state))
 
         return follow
 

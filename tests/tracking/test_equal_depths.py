@@ -10,7 +10,7 @@ from draws import draws
 from standoff.geometry import ConicArc
 from standoff.kernels.pair.polytope_layout import N_VERTICES
 from standoff.kernels.state import arrays as K
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.derivatives import Smoothness
 from tracking.made_answers import random_pose
 
@@ -124,7 +124,7 @@ def derived_after_a_frame(tie, shift, rng):
     state = tracker.start(world, world @ ways[-1])
     for way in ways[-2::-1]:
         state, answer = tracker.step(state, world, world @ way)
-    block = Block(answer._out)
+    block = FrameBlock(answer._out)
     assert block.polytope[N_VERTICES] > 0.0
     bare = block.data[: int(block.data[K.BLOCK_POLYTOPE])].copy()
     bare[K.BLOCK_POLYTOPE] = 0.0

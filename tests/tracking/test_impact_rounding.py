@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import standoff as so
-from standoff.impact.moment import Box
+from standoff.impact.moment import BodyBox
 from standoff.kernels.body import layout as L
 from standoff.motion import Bounded, Carried, ConstantTwist, Fixed, Offset, PoseSamples, Screw
 
@@ -153,6 +153,6 @@ def test_bounding_balls_hold_what_a_body_may_be_off(rng: np.random.Generator) ->
     hull = so.Body.from_points(points, tolerance=0.03)
     half, slack = hull.reals[L.BOX_HALF : L.BOX_HALF + 3], hull.reals[L.SLACK]
     assert slack > 0.0
-    box = Box(hull)
+    box = BodyBox(hull)
     assert (box.half >= half + slack).all()
     assert box.reach >= np.linalg.norm(half) + slack

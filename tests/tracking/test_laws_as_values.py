@@ -23,7 +23,7 @@ from standoff.kernels.state import arrays as K
 from standoff.motion import ConstantTwist
 from standoff.scene import TrackSettings, load_scene
 from standoff.scene.files import toml_tables
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.scene.settings import read_settings
 from standoff.tracking.law_options import Choice, options_of
 from standoff.tracking.laws import LAWS, every_option, law_of_facts
@@ -162,7 +162,7 @@ def test_a_scene_says_each_option(law: Any) -> None:
 
     facts = {name: value for name, value in law.facts().items() if value is not None}
     text = "\n".join(f"{name} = {toml(value)}" for name, value in facts.items())
-    assert read_settings(Table(toml_tables(text))).law == law
+    assert read_settings(SceneTable(toml_tables(text))).law == law
     assert TrackSettings().overridden(facts).law == law
     assert law_of_facts(json.loads(json.dumps(facts))) == law
     with pytest.raises(ValueError, match="zzz is not an option of the law"):

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 import standoff as so
 from families import impacts
 from standoff.bodies.body import proven_again
-from standoff.impact.moment import Box, Moment
+from standoff.impact.moment import BodyBox, PairInstant
 from standoff.impact.search import Chords
 from standoff.motion import (
     Bounded,
@@ -205,7 +205,7 @@ def test_no_separation_sags_below_the_bound(wall: bool, rng: np.random.Generator
     blade, bar = oracle.SharpBox(2.0, 0.1, 0.1), so.shapes.box(2.0, 0.1, 0.1)
     shapes = blade, oracle.HalfSpace() if wall else blade
     tracker = so.Tracker(bar, so.shapes.halfspace() if wall else bar)
-    boxes = Box(tracker.a), Box(tracker.b)
+    boxes = BodyBox(tracker.a), BodyBox(tracker.b)
     for _ in range(100):
         place = np.array([0.0, 0.0, -4.0]) if wall else np.array([0.0, 0.0, 4.0])
         paths = [
@@ -215,7 +215,7 @@ def test_no_separation_sags_below_the_bound(wall: bool, rng: np.random.Generator
                 (np.zeros(3), place, rng.normal(size=3) * 0.3, rng.normal(size=3) * 0.4, "body"),
             )
         ]
-        first, last = (Moment(boxes, (paths[0], paths[1]), t) for t in (0.0, 0.4))
+        first, last = (PairInstant(boxes, (paths[0], paths[1]), t) for t in (0.0, 0.4))
         for moment in (first, last):
             moment.ask(tracker, None)
         if min(first.lower, last.lower) <= 0.0:
@@ -408,12 +408,12 @@ def test_bodies_graze_only_where_they_are_proven_near(
     monkeypatch, make, upper, slacks, status
 ) -> None:
     """Of bodies that touch, with answers that prove no more than the bounds that are given."""
-    ask, body = Moment.ask, make()
+    ask, body = PairInstant.ask, make()
 
     def asked(moment, tracker, before):
         ask(moment, tracker, before)
         moment.lower, moment.upper = -1.0, upper + slacks * body.report.slack
 
-    monkeypatch.setattr(Moment, "ask", asked)
+    monkeypatch.setattr(PairInstant, "ask", asked)
     found = so.time_of_impact(body, body, REST, Fixed(at(0.0, 0.0, 1.0)), 1.0)
     assert found.status.name == status

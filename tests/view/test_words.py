@@ -11,7 +11,7 @@ from standoff.tracking import Status
 from standoff.tracking.status import OF_SOLIDS
 from standoff.view.plot import PlotScale, scale_of
 from standoff.view.readout import beside, readout, verdict
-from standoff.view.shown import Shown
+from standoff.view.shown import ShownPair
 from standoff.view.tolerances import LEVEL_PLOT
 
 SAID = [
@@ -63,11 +63,11 @@ SAID = [
 ]
 
 
-def answer(status: Status, distance: float, bound: float) -> Shown:
+def answer(status: Status, distance: float, bound: float) -> ShownPair:
     normal = np.array([0.0, -1e-17, -1.0])
     home = Pose.identity()
     features = Feature("face", 2), Feature("edge", 0)
-    return Shown(
+    return ShownPair(
         (home, home),
         (np.zeros(3), np.nan_to_num(distance) * normal),
         normal,

@@ -13,7 +13,7 @@ from standoff.kernels.entries import world as kernels
 from standoff.kernels.world import arrays as W
 from standoff.world import broad_phase
 from standoff.world.packed import packed_pieces
-from standoff.world.pieces import Piece
+from standoff.world.pieces import CompoundPiece
 
 FLOOR = so.shapes.halfspace((0.0, 0.6, 0.8), offset=-0.4)
 
@@ -27,12 +27,12 @@ def placed(pieces, poses, before=None):
     return frame
 
 
-def drawn_piece(rng: np.random.Generator, shape: so.Body) -> Piece:
+def drawn_piece(rng: np.random.Generator, shape: so.Body) -> CompoundPiece:
     """Some with a placement, some far from the origin of their body, or very large or small."""
     pose = poses_of(rng, 1, 10.0 ** rng.uniform(-2, 3))[0] if rng.random() < 0.5 else np.eye(4)
     scale = 10.0 ** rng.uniform(-3, 3)
     body = shape if shape is FLOOR else shape.transformed(scale * np.eye(3))
-    return Piece(body, so.Pose.of(pose))
+    return CompoundPiece(body, so.Pose.of(pose))
 
 
 def test_boxes_bound_the_distance_from_below(rng: np.random.Generator) -> None:
@@ -111,7 +111,7 @@ def test_the_tree_finds_every_pair_of_boxes(
     """Of bodies in one place as well, and with one huge body among small ones."""
     shapes = [SHAPES[rng.integers(len(SHAPES))] for _ in range(n)]
     shapes[0] = so.shapes.box((30.0, 30.0, 0.1))
-    pieces = packed_pieces([[Piece(shape, so.Pose.identity())] for shape in shapes])
+    pieces = packed_pieces([[CompoundPiece(shape, so.Pose.identity())] for shape in shapes])
     world = so.World({f"b{k}": shape for k, shape in enumerate(shapes)}, within=0.2)
     poses = poses_of(rng, n, spread)
     search = world.model.search
@@ -122,7 +122,7 @@ def test_the_tree_finds_every_pair_of_boxes(
         search,
         frame,
         tree,
-        broad_phase.Table(np.empty((0, W.N_INTS), np.int64), np.empty((0, W.N_KNOWN))),
+        broad_phase.PairTable(np.empty((0, W.N_INTS), np.int64), np.empty((0, W.N_KNOWN))),
     )
     found = {tuple(pair) for pair in table.ints[:, [W.I_A, W.I_B]].tolist()}
     low, high = tree.boxes[:, :3], tree.boxes[:, 3:]

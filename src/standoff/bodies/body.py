@@ -12,8 +12,8 @@ import numpy as np
 from standoff.bodies.assembly import assemble, joined_parts
 from standoff.bodies.boundary import Boundary
 from standoff.bodies.charts import edge_points, loop_pcurve
-from standoff.bodies.convexity import Known
-from standoff.bodies.finishing import Packed, finish
+from standoff.bodies.convexity import FaceProofs
+from standoff.bodies.finishing import PackedBoundary, finish
 from standoff.bodies.made_parts import MadeParts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.tolerances import MAX_SPREAD, SIMILARITY_TOLERANCE, SINGULAR_MAP
@@ -150,7 +150,7 @@ class Body(Boundary):
             residual=max(joined.residual, sewn.residual),
             tolerance=sewn.tolerance,
         )
-        known = Known(sewn.labels, sewn.proofs)
+        known = FaceProofs(sewn.labels, sewn.proofs)
         return made_body(name, radius, finish(joined, radius, convexity_tolerance, known))
 
     @staticmethod
@@ -341,7 +341,7 @@ def proven_again(
     return made_body(name, radius, finish(joined, radius, None))
 
 
-def made_body(name: str, radius: float, packed: Packed) -> Body:
+def made_body(name: str, radius: float, packed: PackedBoundary) -> Body:
     """A body of a boundary that is finished."""
     parts, report = packed.parts, packed.report
     return Body(

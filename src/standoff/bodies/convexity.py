@@ -31,7 +31,7 @@ from standoff.typing import Array
 
 
 @dataclass(frozen=True)
-class Known:
+class FaceProofs:
     """What is already known of every face: its name in messages, and its proof."""
 
     names: Sequence[str]
@@ -52,7 +52,7 @@ def convexity(
     turns: Sequence[EdgeTurns],
     size: float,
     tolerance: float,
-    known: Known | None = None,
+    known: FaceProofs | None = None,
 ) -> Convexity:
     """Bound the convexity defect over the whole boundary.
 

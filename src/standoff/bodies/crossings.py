@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.bodies.face_leaves import FaceChart, Leaves, face_charts, leaves_of, quartered
+from standoff.bodies.face_leaves import FaceChart, FaceRectangles, face_charts, leaves_of, quartered
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tolerances import CROSSING_STEP, LEAF_MARGIN, SAME_CROSSING
 from standoff.errors import BodyError
@@ -50,7 +50,7 @@ class Crossings:
     def __init__(self, boundary: PackedParts, faces: Sequence[int] | None = None) -> None:
         self.boundary = boundary
         self.charts = face_charts(boundary, faces)
-        self._leaves: dict[int, Leaves] = {}
+        self._leaves: dict[int, FaceRectangles] = {}
         self._extents: dict[tuple[int, int], tuple[Array, Array]] = {}
         self.near = 0.0
         low, high = self._whole(np.eye(3))
@@ -77,7 +77,7 @@ class Crossings:
             self._known[number] = frame, *self._whole(frame)
         return self._known[number]
 
-    def _met_leaves(self, k: int, number: int, at: Array, frame: Array) -> Leaves:
+    def _met_leaves(self, k: int, number: int, at: Array, frame: Array) -> FaceRectangles:
         """Those of a chart's leaves that a ray may meet; they are made once it meets the chart."""
         if k not in self._leaves:
             self._leaves[k] = leaves_of(self.boundary, self.charts[k], LEAF_ANGLE)
@@ -86,7 +86,7 @@ class Crossings:
             low, high = self.charts[k].surface.extents(own.rectangles, frame)
             self._extents[k, number] = low - self.near, high + self.near
         met = _meets(at, *self._extents[k, number])
-        return Leaves(*(rows[met] for rows in own))
+        return FaceRectangles(*(rows[met] for rows in own))
 
     def inside(self, point: Array) -> bool:
         """Is a point inside, or on a face?

@@ -10,7 +10,7 @@ import numpy as np
 
 from standoff.bodies.moments.cells import integrate
 from standoff.bodies.moments.face_cells import face_cells
-from standoff.bodies.moments.flux import AREA, COLUMNS, VOLUME, Frame
+from standoff.bodies.moments.flux import AREA, COLUMNS, VOLUME, IntegralFrame
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.packing import Assembled
 from standoff.bodies.tolerances import VOLUME_ROUNDINGS
@@ -51,7 +51,7 @@ def enclosed_by(boundary: PackedParts, shell: Sequence[int], tolerance: float) -
     centre = points.mean(axis=0) if len(points) else charts[0].shift
     away = np.linalg.norm(points - centre, axis=1).max(initial=0.0)
     reach = float(away) or max(reaches)
-    frame = Frame(centre, reach, 0.0)
+    frame = IntegralFrame(centre, reach, 0.0)
     cells = [replace(cell, owner=i) for i in shell for cell in face_cells(boundary, i, frame)]
 
     def scale(values: Array) -> Array:

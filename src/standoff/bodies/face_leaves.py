@@ -26,7 +26,7 @@ BOX_QUARTERINGS = 8
 MOST_QUARTERINGS = 7
 
 
-class Leaves(NamedTuple):
+class FaceRectangles(NamedTuple):
     """Rectangles (n, 4), rows (u0, u1, v0, v1), of which the face may cover only part, or nothing,
     and cones of the normals x_u × x_v over each, axes (n, 3) and half angles (n,)."""
 
@@ -101,7 +101,7 @@ def _borders(boundary: PackedParts, number: int) -> tuple[Array, Array]:
     return np.concatenate([b[0] for b in boxes]), np.concatenate([b[1] for b in boxes])
 
 
-def leaves_of(boundary: PackedParts, chart: FaceChart, widest: float) -> Leaves:
+def leaves_of(boundary: PackedParts, chart: FaceChart, widest: float) -> FaceRectangles:
     """Rectangles that cover a chart's part of its face. Over each the normals fit a cone of half
     angle `widest`, radians, unless it was quartered MOST_QUARTERINGS times."""
     parts, rows = [], chart.rectangle[None]
@@ -114,7 +114,7 @@ def leaves_of(boundary: PackedParts, chart: FaceChart, widest: float) -> Leaves:
         rows = quartered(rows[~kept])
         if not len(rows):
             break
-    return Leaves(*map(np.concatenate, zip(*parts, strict=True)))
+    return FaceRectangles(*map(np.concatenate, zip(*parts, strict=True)))
 
 
 def grown_box(

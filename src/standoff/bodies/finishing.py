@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.bodies.angles import EdgeTurns, check_vertices, dihedral, edge_turns, refined
 from standoff.bodies.assembly import Joined
-from standoff.bodies.convexity import Convexity, Known, convexity
+from standoff.bodies.convexity import Convexity, FaceProofs, convexity
 from standoff.bodies.packing import Assembled, pack, without_charts
 from standoff.bodies.report import BodyReport
 from standoff.bodies.sampling import (
@@ -30,7 +30,7 @@ from standoff.typing import Array, Ints
 
 
 @dataclass(frozen=True, eq=False)
-class Packed:
+class PackedBoundary:
     """A checked boundary, its two arrays, and what was found."""
 
     parts: Assembled
@@ -43,8 +43,8 @@ def finish(
     joined: Joined,
     radius: float,
     convexity_tolerance: float | None,
-    known: Known | None = None,
-) -> Packed:
+    known: FaceProofs | None = None,
+) -> PackedBoundary:
     """Prove convexity, bound the defect, and pack.
 
     Raises BodyError: a boundary that is not convex, has no extent, or is a knife edge with a
@@ -83,7 +83,7 @@ def finish(
     inner = inner_boxes(parts, ints, reals)
     ints, reals = pack(parts, samples, box, radius, slack, inner)
     report = _report(parts, joined, turns, found, size + 2.0 * radius, share, slack, roundoff)
-    return Packed(parts, ints, reals, report)
+    return PackedBoundary(parts, ints, reals, report)
 
 
 def _smooth(parts: Assembled, turns: list[EdgeTurns]) -> list[bool]:

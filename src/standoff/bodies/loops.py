@@ -21,7 +21,7 @@ ALONG = 33
 
 
 @dataclass(frozen=True)
-class Loop:
+class ClosedEntries:
     """Entries of a face's loop that close on themselves.
 
     Attributes
@@ -108,7 +108,7 @@ def turn_loops(chart: Chart, face: Face, edges: Sequence[Edge], number: int) -> 
     return 2 * len(turned) > len(face.loop)
 
 
-def _against(loops: Sequence[Loop], chart: Chart, number: int, whole: bool) -> list[bool]:
+def _against(loops: Sequence[ClosedEntries], chart: Chart, number: int, whole: bool) -> list[bool]:
     """Which loops run clockwise around the face as they were given."""
     if whole:
         return [loop.area > 0.0 for loop in loops]  # holes, all of them
@@ -147,13 +147,13 @@ def _closed(chart: Chart) -> bool:
     return bool(chart.surface.periodic) and round(sum(around) / (2.0 * np.pi)) == 2
 
 
-def _loop(chart: Chart, entries: tuple[int, ...], edges: Sequence[Edge]) -> Loop:
+def _loop(chart: Chart, entries: tuple[int, ...], edges: Sequence[Edge]) -> ClosedEntries:
     coedges = [c for c in chart.coedges if c.edge >= 0 and c.entry in entries]
     spots = [_points(c) for c in coedges]
     steps = sum(c.side * float(p[-1, 0] - p[0, 0]) for c, p in zip(coedges, spots, strict=True))
     links = np.concatenate([np.stack([p[:-1], p[1:]], 1) for p in spots])
     if not chart.surface.periodic:
-        return Loop(entries, _encircled(chart, coedges, spots), 0, links)
+        return ClosedEntries(entries, _encircled(chart, coedges, spots), 0, links)
     widths: dict[tuple[int, float], float] = {}
     for c in chart.coedges:
         if c.edge < 0:
@@ -163,11 +163,11 @@ def _loop(chart: Chart, entries: tuple[int, ...], edges: Sequence[Edge]) -> Loop
     sides = [_along(*key, width, coedges, edges) for key, width in widths.items()]
     turns = round((steps + sum(along for along, _ in sides)) / (2.0 * np.pi))
     if turns:
-        return Loop(entries, _encircled(chart, coedges, spots), turns, links)
+        return ClosedEntries(entries, _encircled(chart, coedges, spots), turns, links)
     area = -sum(level * along for along, level in sides)
     for c, points in zip(coedges, spots, strict=True):
         area -= c.side * float(0.5 * (points[1:, 1] + points[:-1, 1]) @ np.diff(points[:, 0]))
-    return Loop(entries, area, 0, links)
+    return ClosedEntries(entries, area, 0, links)
 
 
 def _along(
@@ -216,7 +216,7 @@ def _encircled(chart: Chart, coedges: Sequence[Coedge], spots: Sequence[Array]) 
     return area
 
 
-def _within(loop: Loop, links: Array) -> bool:
+def _within(loop: ClosedEntries, links: Array) -> bool:
     """Do most points of a loop lie inside the others, by the parity of a ray's crossings?"""
     u, v = loop.links[:, 0].T
     (a, b), (c, d) = links[:, 0].T, links[:, 1].T

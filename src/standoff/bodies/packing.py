@@ -117,7 +117,7 @@ class Sample:
     v: float
 
 
-class Counts(NamedTuple):
+class PartCounts(NamedTuple):
     """How many parts a body has."""
 
     dimension: int
@@ -128,7 +128,7 @@ class Counts(NamedTuple):
     samples: int
 
 
-class Writer:
+class ArrayWriter:
     """Appends to the two arrays; every table's offset is known when it is written."""
 
     def __init__(self) -> None:
@@ -167,9 +167,9 @@ def pack(
     """The (ints, reals) of a body. `box` is (low, high) of its core, None if it is unbounded;
     `inner` are its charts' rectangles of parameters (``inner_boxes``), None while not known.
     """
-    w = Writer()
+    w = ArrayWriter()
     counts = (len(part) for part in (body.faces, body.edges, body.vertices, body.charts, samples))
-    put_header(w, Counts(body.dimension, *counts), box, radius, slack)
+    put_header(w, PartCounts(body.dimension, *counts), box, radius, slack)
     _pack_faces(w, body, inner)
     _pack_edges(w, body)
     _pack_vertices(w, body)
@@ -178,7 +178,7 @@ def pack(
 
 
 def put_header(
-    w: Writer, counts: Counts, box: tuple[Array, Array] | None, radius: float, slack: float
+    w: ArrayWriter, counts: PartCounts, box: tuple[Array, Array] | None, radius: float, slack: float
 ) -> None:
     """Write how many parts there are, and the body's size and place."""
     w.ints[L.DIMENSION] = counts.dimension
@@ -198,7 +198,7 @@ def put_header(
         w.reals[L.BOX_HALF : L.BOX_HALF + 3] = array("d", 0.5 * (high - low))
 
 
-def put_samples(w: Writer, samples: Sequence[Sample]) -> None:
+def put_samples(w: ArrayWriter, samples: Sequence[Sample]) -> None:
     """Write the samples, which come last."""
     w.table(L.SAMPLES, [(s.feature, s.chart) for s in samples])
     w.ints[L.SAMPLE_REALS] = len(w.reals)
@@ -206,7 +206,7 @@ def put_samples(w: Writer, samples: Sequence[Sample]) -> None:
         w.real_block([*s.point, *s.normal, s.u, s.v])
 
 
-def _pack_faces(w: Writer, body: Assembled, inner: Sequence[Sequence[float]] | None) -> None:
+def _pack_faces(w: ArrayWriter, body: Assembled, inner: Sequence[Sequence[float]] | None) -> None:
     owned: list[list[int]] = [[] for _ in body.faces]
     for k, chart in enumerate(body.charts):
         owned[chart.face].append(k)
@@ -269,7 +269,7 @@ def _coedges_of_edges(body: Assembled) -> list[list[int]]:
     ]
 
 
-def _pack_edges(w: Writer, body: Assembled) -> None:
+def _pack_edges(w: ArrayWriter, body: Assembled) -> None:
     rows = []
     coedges_of = _coedges_of_edges(body)
     for j, edge in enumerate(body.edges):
@@ -289,7 +289,7 @@ def _pack_edges(w: Writer, body: Assembled) -> None:
     w.table(L.EDGES, rows)
 
 
-def _pack_vertices(w: Writer, body: Assembled) -> None:
+def _pack_vertices(w: ArrayWriter, body: Assembled) -> None:
     n = len(body.vertices)
     w.ints[L.VERTICES] = len(w.ints)
     start = len(w.ints)

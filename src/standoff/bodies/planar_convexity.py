@@ -29,7 +29,7 @@ MOST_TURNING = 3.0 * np.pi
 
 
 @dataclass(frozen=True)
-class _Run:
+class _CurveRun:
     """A curve followed counterclockwise: its normals at both ends, and by how much it turns."""
 
     first: Array
@@ -136,12 +136,12 @@ def _joints(curve: Curve, number: int) -> list[float]:
     return [curve.first, *inside, curve.last]
 
 
-def _run(curve: Curve, right: bool) -> _Run:
+def _run(curve: Curve, right: bool) -> _CurveRun:
     breaks = curve.essential.breaks if isinstance(curve, NurbsCurve) else (curve.first, curve.last)
     ts = np.unique([np.linspace(a, b, TURN_POINTS) for a, b in pairwise(breaks)])
     normals = np.array([_normal(curve, float(t), right) for t in (ts if right else ts[::-1])])
     turn = sum(_angle(a, b) for a, b in pairwise(normals))
-    return _Run(normals[0], normals[-1], turn)
+    return _CurveRun(normals[0], normals[-1], turn)
 
 
 def _normal(curve: Curve, t: float, right: bool) -> Array:
@@ -154,7 +154,7 @@ def _angle(a: Array, b: Array) -> float:
     return float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
 
 
-def _corners(body: Assembled, runs: list[_Run]) -> dict[int, float]:
+def _corners(body: Assembled, runs: list[_CurveRun]) -> dict[int, float]:
     """The turn at every vertex from the curve that arrives to the one that leaves, radians."""
     arriving: dict[int, Array] = {}
     leaving: dict[int, Array] = {}

@@ -35,7 +35,7 @@ NEAR_WITNESS = np.logspace(-8.5, -2.0, 27)
 
 
 @dataclass(frozen=True)
-class Piece:
+class CurvePiece:
     """One analytic piece of a curve: t from first to last; `jet` gives (x, x_t).
 
     Attributes
@@ -97,11 +97,11 @@ def _level(points: Array, top: Array, direction: Array, rounding: float) -> Arra
     return np.asarray(-(away @ direction) <= LEVEL * np.linalg.norm(away, axis=1) + rounding)
 
 
-def _spread(piece: Piece, count: int) -> Array:
+def _spread(piece: CurvePiece, count: int) -> Array:
     return np.linspace(piece.first, piece.last, count)
 
 
-def _pieces(body: PackedParts, direction: Array, lowest: float) -> Iterator[Piece]:
+def _pieces(body: PackedParts, direction: Array, lowest: float) -> Iterator[CurvePiece]:
     """Curved edges, and lines between the spans of faces, that may reach a height."""
     for edge in body.edge_parts:
         if not isinstance(edge.curve, Line):  # the ends of a line are vertices
@@ -114,19 +114,19 @@ def _pieces(body: PackedParts, direction: Array, lowest: float) -> Iterator[Piec
                 yield from _on_face(body, chart, line)
 
 
-def _edge_pieces(curve: Curve, direction: Array, lowest: float) -> Iterator[Piece]:
+def _edge_pieces(curve: Curve, direction: Array, lowest: float) -> Iterator[CurvePiece]:
     if isinstance(curve, ConicArc):
         basis = curve.basis()
         a, b, c = basis.T @ direction
         if c + np.hypot(a, b) >= lowest:
-            yield Piece(_curve_jet(curve), curve.first, curve.last, basis)
+            yield CurvePiece(_curve_jet(curve), curve.first, curve.last, basis)
         return
     for first, last in pairwise(curve_breaks(curve)):
         line = _isoline_of(curve, float(first), float(last))
         if line is None:
-            yield Piece(_curve_jet(curve), float(first), float(last))
+            yield CurvePiece(_curve_jet(curve), float(first), float(last))
         elif _reaches(line, direction, lowest):
-            yield Piece(line.jet, line.first, line.last)
+            yield CurvePiece(line.jet, line.first, line.last)
 
 
 def _isoline_of(curve: Curve, first: float, last: float) -> _Isoline | None:
@@ -205,14 +205,14 @@ def _reaches(line: _Isoline, direction: Array, height: float) -> bool:
     return bool((points[:, :3] @ direction >= height * points[:, 3]).any())
 
 
-def _on_face(body: PackedParts, chart: int, line: _Isoline) -> Iterator[Piece]:
+def _on_face(body: PackedParts, chart: int, line: _Isoline) -> Iterator[CurvePiece]:
     """A line between spans, if the trimmed face contains all of it."""
     inner = np.linspace(line.first, line.last, SAMPLES)[1:-1]
     if all(on_face(body.ints, body.reals, chart, *line.parameters(float(t))) for t in inner):
-        yield Piece(line.jet, line.first, line.last)
+        yield CurvePiece(line.jet, line.first, line.last)
 
 
-def _peaks(piece: Piece, direction: Array) -> Iterator[Array]:
+def _peaks(piece: CurvePiece, direction: Array) -> Iterator[Array]:
     """The highest points of a piece, ends included."""
 
     def slope(t: float) -> float:
@@ -227,7 +227,7 @@ def _peaks(piece: Piece, direction: Array) -> Iterator[Array]:
             yield piece.jet(float(t))[0]
 
 
-def _arc_parameters(piece: Piece, witness: Array) -> Array:
+def _arc_parameters(piece: CurvePiece, witness: Array) -> Array:
     """Evenly spaced, and denser near the point nearest to the witness."""
 
     def away(t: float) -> float:

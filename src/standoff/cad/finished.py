@@ -27,7 +27,7 @@ class _Writer(pickle.Pickler):
         return "shape" if part is self.shape else None
 
 
-class _Reader(pickle.Unpickler):
+class _FieldReader(pickle.Unpickler):
     """Of what `_Writer` wrote, for the same shape."""
 
     def __init__(self, content: bytes, shape: Any) -> None:
@@ -45,7 +45,7 @@ def _solid_written(solid: Solid) -> bytes:
     return stream.getvalue()
 
 
-class Packed(NamedTuple):
+class FinishedArrays(NamedTuple):
     """What was made, as it goes to the store, and from one process to another: the report, whether
     there is no shape, the shape, and the solid of one that is not convex."""
 
@@ -55,10 +55,10 @@ class Packed(NamedTuple):
     solid: bytes | None
 
 
-def packed(report: Any, shape: Boundary | Body | None, solid: Solid | None) -> Packed:
+def packed(report: Any, shape: Boundary | Body | None, solid: Solid | None) -> FinishedArrays:
     """The shape is None where the part was refused."""
     written = None if solid is None else _solid_written(solid)
-    return Packed(report, shape is None, pickle.dumps(shape), written)
+    return FinishedArrays(report, shape is None, pickle.dumps(shape), written)
 
 
 class Finished:
@@ -72,7 +72,9 @@ class Finished:
         Is there no shape?
     """
 
-    def __init__(self, packed: Packed, key: str, made: tuple[Any, Any] | None = None) -> None:
+    def __init__(
+        self, packed: FinishedArrays, key: str, made: tuple[Any, Any] | None = None
+    ) -> None:
         self.report, self.refused, self._shape, self._solid = packed
         self._key = f"{key}-solid"
         if made is not None:  # by this process
@@ -99,7 +101,7 @@ class Finished:
 
         content = self._solid or store.taken(self._key)
         if content is not None:
-            found: Solid = _Reader(content, shape).load()
+            found: Solid = _FieldReader(content, shape).load()
             return found
         made = solid_of(shape)
         store.put(self._key, _solid_written(made))
@@ -113,10 +115,10 @@ def stored(key: str) -> Finished | None:
     if content is None:
         return None
     report, refused, shape = pickle.loads(content)
-    return Finished(Packed(report, refused, shape, None), key)
+    return Finished(FinishedArrays(report, refused, shape, None), key)
 
 
-def keep(packed: Packed, key: str) -> None:
+def keep(packed: FinishedArrays, key: str) -> None:
     """Put a solid into the store."""
     store.put(key, pickle.dumps(packed[:3]))
     if packed.solid is not None:

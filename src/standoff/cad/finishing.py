@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from standoff.cad import store
-from standoff.cad.finished import Finished, Packed, keep, packed, stored
+from standoff.cad.finished import Finished, FinishedArrays, keep, packed, stored
 from standoff.wording import counted
 from standoff.worker_processes import result_of, worker_processes
 
@@ -91,7 +91,7 @@ def _different(instances: Sequence[Any]) -> tuple[list[_Solid], list[int]]:
 
 def _made(
     missing: Sequence[tuple[int, _Solid]], given: tuple[Any, ...], workers: int
-) -> Iterator[tuple[int, Packed, Both | None]]:
+) -> Iterator[tuple[int, FinishedArrays, Both | None]]:
     """Number, what was made packed, and itself where this process made it, in any order."""
     from standoff.cad.making import made_part
 
@@ -110,7 +110,7 @@ def _made(
                 yield running.pop(each), result_of(each), None
 
 
-def _work(written: bytes, name: str, given: tuple[Any, ...]) -> Packed:
+def _work(written: bytes, name: str, given: tuple[Any, ...]) -> FinishedArrays:
     """Make a solid in another process."""
     from OCP.BinTools import BinTools
     from OCP.TopoDS import TopoDS_Shape

@@ -19,7 +19,7 @@ from standoff.bodies.enclosed import MOST_NODES
 from standoff.bodies.finishing import finish
 from standoff.bodies.moments.cells import integrate
 from standoff.bodies.moments.face_cells import face_cells
-from standoff.bodies.moments.flux import AREA, COLUMNS, Frame
+from standoff.bodies.moments.flux import AREA, COLUMNS, IntegralFrame
 from standoff.bodies.report import BoundaryReport
 from standoff.bodies.tolerances import JOIN_TOLERANCE, ROUNDOFF
 from standoff.bodies.topology import Face
@@ -38,7 +38,7 @@ from standoff.cad.measures import (
 )
 from standoff.cad.miss_bounds import miss_bound, side_miss
 from standoff.cad.opencascade import cast, caught_lines, explored, is_kind
-from standoff.cad.pieces import Pieces, Refused, pieces_of
+from standoff.cad.pieces import BoundaryPieces, PartRefusal, pieces_of
 from standoff.cad.seams import without_seams
 from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY, SEWN_AT_LEAST
@@ -55,7 +55,7 @@ MOST_NAMED = 4
 
 
 @dataclass(frozen=True)
-class Made:
+class MadePart:
     """A part, or None where it was refused, and what was found; with its solid, if it was made."""
 
     shape: Boundary | Body | None
@@ -65,7 +65,7 @@ class Made:
 
 def made_part(
     shape: Any, name: str, heal: bool, accuracy: float = 0.0, most: float | None = None
-) -> Made:
+) -> MadePart:
     """A part of a solid of OpenCASCADE; refused with a reason rather than half made.
 
     accuracy : that the file states, length; most : by how much its parts may miss each other,
@@ -92,7 +92,7 @@ def made_part(
             failed = f"OpenCASCADE fails on it with {type(error).__name__} {error}"
             report = replace(report, refused=failed.rstrip())
     notes = (*report.notes, *(f"OpenCASCADE: {line}" for line in lines))
-    return Made(made, replace(report, notes=notes, seconds=perf_counter() - start), solid)
+    return MadePart(made, replace(report, notes=notes, seconds=perf_counter() - start), solid)
 
 
 def _kinds(shape: Any) -> dict[str, int]:
@@ -113,7 +113,7 @@ def _made(
     try:
         bound, face = trim_bound(pieces, size)
         if bound > allowed:
-            raise Refused(_missed(report, bound, pieces.names[face]))
+            raise PartRefusal(_missed(report, bound, pieces.names[face]))
         parts = points, pieces.edges, pieces.faces
         joined = joined_parts(*parts, allowed, closed=True, senses=pieces.senses)
         residual = max(joined.residual, bound + pieces.moved)
@@ -122,7 +122,7 @@ def _made(
         joined = replace(joined, residual=residual, tolerance=within)
         boundary = made_boundary(report.name, joined)
     except BodyError as error:
-        raise Refused(_in_file(str(error), pieces)) from error
+        raise PartRefusal(_in_file(str(error), pieces)) from error
     found = boundary.check()
     assert isinstance(found, BoundaryReport)
     near = FILE_AREA * found.volume + found.slack * found.area
@@ -135,7 +135,7 @@ def _made(
         notes = (*notes, f"of its splines these are others within {pieces.moved:.2g}: {kinds}")
     volume, room = judged(solid, "volume", found.volume, near)
     if abs(found.volume - volume) > room:
-        raise Refused(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")
+        raise PartRefusal(f"its volume is {found.volume:.9g} here, {volume:.9g} by OpenCASCADE")
     body = _convex(boundary, joined)
     made = _not_crossing(boundary, pieces) if body is None else None
     places = () if made is None else made.self_intersections.lines()
@@ -170,7 +170,7 @@ NUMBERED = re.compile(r"\b([Ff]ace|[Ee]dge)(s?) (\d+(?:, \d+)*)")
 """Faces and edges of a boundary in a message."""
 
 
-def _in_file(told: str, pieces: Pieces) -> str:
+def _in_file(told: str, pieces: BoundaryPieces) -> str:
     """A message with the file's names of faces, and places of edges."""
 
     def name(match: re.Match[str]) -> str:
@@ -185,7 +185,7 @@ def _in_file(told: str, pieces: Pieces) -> str:
     return NUMBERED.sub(name, told)
 
 
-def _not_crossing(boundary: Boundary, pieces: Pieces) -> Solid:
+def _not_crossing(boundary: Boundary, pieces: BoundaryPieces) -> Solid:
     """The solid of a boundary; raises Refused if it crosses itself."""
     from standoff.solids import SelfIntersections, Solid
 
@@ -197,10 +197,10 @@ def _not_crossing(boundary: Boundary, pieces: Pieces) -> Solid:
         found = error.value.crossings
         told = [_crossing(place, pieces) for place in found[:MOST_NAMED]]
         dots = "; ..." if len(found) > MOST_NAMED else ""
-        raise Refused(f"it crosses itself: {'; '.join(told)}{dots}") from error
+        raise PartRefusal(f"it crosses itself: {'; '.join(told)}{dots}") from error
 
 
-def _crossing(place: SelfIntersection, pieces: Pieces) -> str:
+def _crossing(place: SelfIntersection, pieces: BoundaryPieces) -> str:
     one, other = (pieces.names[f.index] for f in (place.feature_a, place.feature_b))
     x, y, z = place.point_a
     return f"{one} crosses {other} near ({x:.6g}, {y:.6g}, {z:.6g}), by about {place.depth:.3g}"
@@ -210,32 +210,32 @@ def _check(shape: Any, size: float) -> None:
     """Raise Refused for what is no closed solid, or has faces without area."""
     faces = list(explored(shape, "face"))
     if not faces:
-        raise Refused("it has no face")
+        raise PartRefusal("it has no face")
     if len(faces) > MOST_FACES:
-        raise Refused(f"it has {len(faces)} faces; at most {MOST_FACES} (standoff.cad.limits)")
+        raise PartRefusal(f"it has {len(faces)} faces; at most {MOST_FACES} (standoff.cad.limits)")
     for number, face in enumerate(faces, 1):
         if abs(area_of(face)) <= LEAST_FACE * size**2:
-            raise Refused(f"{named(face, number)} has no area")
+            raise PartRefusal(f"{named(face, number)} has no area")
     at = free_edges(shape)
     if at or not is_kind(shape, "solid"):
         where = ", ".join(at[:MOST_NAMED]) + (", ..." if len(at) > MOST_NAMED else "")
-        raise Refused(
+        raise PartRefusal(
             f"its shell is open: {counted(len(at), 'edge bounds', 'edges bound')} one face, near "
             f"{where}; heal=True sews what lies within the file's tolerance"
             if at
             else "it is a closed shell, but no solid; heal=True makes it one"
         )
     if volume_of(shape) < 0.0:
-        raise Refused(
+        raise PartRefusal(
             f"it is inside out: its {counted(len(faces), 'face')}, from face 1 (a "
             f"{kind_of(faces[0])}) on, face into the solid; heal=True turns it"
         )
     faults = faults_of(shape)
     if faults:
-        raise Refused("; ".join(faults[:MOST_NAMED]))
+        raise PartRefusal("; ".join(faults[:MOST_NAMED]))
 
 
-def trim_bound(pieces: Pieces, size: float) -> tuple[float, int]:
+def trim_bound(pieces: BoundaryPieces, size: float) -> tuple[float, int]:
     """(a proven bound of how far edges, and vertices of collapsed sides, are from their faces,
     length; of which face)."""
     bounds = [
@@ -246,7 +246,7 @@ def trim_bound(pieces: Pieces, size: float) -> tuple[float, int]:
     return (bounds[worst] if bounds[worst] > ROUNDOFF * size else 0.0), worst
 
 
-def _edge_misses(face: Face, pieces: Pieces, size: float) -> Iterator[float]:
+def _edge_misses(face: Face, pieces: BoundaryPieces, size: float) -> Iterator[float]:
     surface = face.charts[0]
     for entry, (number, _) in enumerate(face.loop):
         curve = pieces.edges[number].curve
@@ -258,13 +258,13 @@ def _edge_misses(face: Face, pieces: Pieces, size: float) -> Iterator[float]:
             yield miss_bound(pcurve, curve, surface, size)
 
 
-def _apex_misses(face: Face, pieces: Pieces) -> Iterator[float]:
+def _apex_misses(face: Face, pieces: BoundaryPieces) -> Iterator[float]:
     for apex in face.apexes:
         yield side_miss(face.charts[0], apex, pieces.vertices[apex.vertex])
 
 
 def _checked_areas(
-    boundary: Boundary, joined: Joined, pieces: Pieces, size: float
+    boundary: Boundary, joined: Joined, pieces: BoundaryPieces, size: float
 ) -> tuple[float, tuple[str, ...]]:
     """The area by OpenCASCADE, and notes; raises Refused if a face has another one than that."""
     slack, total, notes = boundary.check().slack, 0.0, []
@@ -280,7 +280,7 @@ def _checked_areas(
         if abs(own - theirs) > near:
             told = f"its area is {own:.9g} here, {theirs:.9g} by OpenCASCADE"
             if abs(own - theirs) > room:
-                raise Refused(f"{pieces.names[number]}: {told}")
+                raise PartRefusal(f"{pieces.names[number]}: {told}")
             notes.append(f"{pieces.names[number]}: {told}, whose trimming curves miss its edges")
     return total, tuple(notes)
 
@@ -303,7 +303,7 @@ def face_area(boundary: Boundary, number: int, size: float) -> float:
         sizes[AREA] = abs(float(values[AREA])) + FILE_AREA
         return sizes
 
-    cells = list(face_cells(boundary, number, Frame(centre, size, 0.0)))
+    cells = list(face_cells(boundary, number, IntegralFrame(centre, size, 0.0)))
     found = integrate(cells, scale, FILE_AREA, MOST_NODES)
     return float(found.values[AREA]) * size**2
 

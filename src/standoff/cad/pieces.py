@@ -29,12 +29,12 @@ from standoff.geometry.pcurves import Pcurve
 from standoff.typing import Array
 
 
-class Refused(StandoffError):
+class PartRefusal(StandoffError):
     """A part that can't be made; the message names the face or edge of the file and the reason."""
 
 
 @dataclass
-class Pieces:
+class BoundaryPieces:
     """Parts of a boundary, and where they come from.
 
     Attributes
@@ -58,7 +58,7 @@ class Pieces:
     moved: float = 0.0
 
 
-def pieces_of(solid: Any, size: float, original: Any, numbers: Sequence[int]) -> Pieces:
+def pieces_of(solid: Any, size: float, original: Any, numbers: Sequence[int]) -> BoundaryPieces:
     """The parts of a solid without seams that an angle can't take (``seams.without_seams``).
 
     `original` is the solid before; edges that it lacks are isolines of their surfaces. `numbers`
@@ -82,7 +82,7 @@ def pieces_of(solid: Any, size: float, original: Any, numbers: Sequence[int]) ->
             except BodyError:
                 raise
             except StandoffError as error:
-                raise Refused(f"{name}: {error}") from error
+                raise PartRefusal(f"{name}: {error}") from error
     return maker.pieces
 
 
@@ -92,7 +92,7 @@ class _Maker:
     def __init__(self, solid: Any, size: float, original: Any) -> None:
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as Shapes
 
-        self.pieces = Pieces()
+        self.pieces = BoundaryPieces()
         self.size = size
         self.vertex_map, self.edge_map, self.face_map = Shapes(), Shapes(), Shapes()
         self.given = Shapes()
@@ -163,7 +163,7 @@ class _Maker:
             return self.made[key]
         geometry = BRep_Tool.Curve_s(shape, 0.0, 0.0)
         if geometry is None:
-            raise Refused("an edge without a curve in space")
+            raise PartRefusal("an edge without a curve in space")
         first, last = BRep_Tool.Range_s(shape)
         shift = 0.0
         if not self.given.Contains(shape):
@@ -243,7 +243,7 @@ class _Maker:
             collapsed = [e for e in uses if BRep_Tool.Degenerated_s(e)]
             apexes = [self._met(self._apex(e, face, on, over), made, trims) for e in collapsed]
             if not made and not apexes:
-                raise Refused(f"a {on.kind} without an edge")
+                raise PartRefusal(f"a {on.kind} without an edge")
         loop = tuple((number, way) for number, _, way, _ in made)
         given = tuple(trims) if any(t is not None for t in trims) else ()
         self.pieces.faces.append(Face(tuple(charts), loop, tuple(apexes), given))

@@ -40,7 +40,7 @@ MOST_DEGREE, MOST_HALVINGS, MOST_OPEN = 80, 16, 1024
 MOST_PATCHES = 9
 
 
-class Ranges(NamedTuple):
+class TrimRanges(NamedTuple):
     """Ranges (n, 2) of an edge's parameter, over each of which the trimming curve and the edge are
     one polynomial: Bezier nets (n, d + 1, 3) of the one, (n, e + 1, 4) of the other if it is a
     spline."""
@@ -70,7 +70,7 @@ def polynomial_bound(pcurve: Pcurve, curve: Curve, surface: Surface, size: float
     return proven if np.isfinite(proven) else None
 
 
-def _ranges(pcurve: Pcurve, curve: Curve, surface: Surface) -> Ranges | None:
+def _ranges(pcurve: Pcurve, curve: Curve, surface: Surface) -> TrimRanges | None:
     """An edge between all knots whose parameters are known."""
     inside = [float(t) for t in curve.spans()]
     if isinstance(pcurve, NurbsPcurve):
@@ -93,7 +93,7 @@ def _ranges(pcurve: Pcurve, curve: Curve, surface: Surface) -> Ranges | None:
         net = _cut(list(pairwise(curve.essential.breaks)), curve.blocks, ends)
     elif not isinstance(curve, Line | ConicArc):
         return None
-    return Ranges(ends, flat, net)
+    return TrimRanges(ends, flat, net)
 
 
 def _cut(spans: list[tuple[float, float]], nets: Array, ends: Array) -> Array:
@@ -105,7 +105,7 @@ def _cut(spans: list[tuple[float, float]], nets: Array, ends: Array) -> Array:
     return np.asarray(segments(nets.shape[1] - 1, first, last) @ nets[owners])
 
 
-def _halves(ranges: Ranges, which: NDArray[np.bool_]) -> Ranges:
+def _halves(ranges: TrimRanges, which: NDArray[np.bool_]) -> TrimRanges:
     ends = ranges.ends[which]
     middle = ends.mean(axis=1)
     low, high = np.column_stack([ends[:, 0], middle]), np.column_stack([middle, ends[:, 1]])
@@ -116,7 +116,7 @@ def _halves(ranges: Ranges, which: NDArray[np.bool_]) -> Ranges:
         for nets in (ranges.flat, ranges.net)
     ]
     assert both[0] is not None
-    return Ranges(np.concatenate([low, high]), both[0], both[1])
+    return TrimRanges(np.concatenate([low, high]), both[0], both[1])
 
 
 def _taylor(half: float) -> int | None:
@@ -147,7 +147,7 @@ def _degree(surface: Surface, half: Array) -> int | None:
     return sum(known) if known and len(known) == len(degrees) else None
 
 
-def _bounds(ranges: Ranges, curve: Curve, surface: Surface) -> tuple[Array, Array]:
+def _bounds(ranges: TrimRanges, curve: Curve, surface: Surface) -> tuple[Array, Array]:
     """(n,) bounds of |g| over ranges, inf where they are too long, and greatest values seen."""
     low, high = bezier_box(ranges.flat)
     half = 0.5 * (high - low)
@@ -176,7 +176,7 @@ def _bounds(ranges: Ranges, curve: Curve, surface: Surface) -> tuple[Array, Arra
     return bounds, np.where(np.isfinite(bounds), seen.max(axis=1), 0.0)
 
 
-def _sphere_bounds(ranges: Ranges, curve: Curve, surface: Surface) -> tuple[Array, Array]:
+def _sphere_bounds(ranges: TrimRanges, curve: Curve, surface: Surface) -> tuple[Array, Array]:
     """The same in a gnomonic chart, whose points are a root's: of the edge's distance from the
     sphere, and of the angle between its direction and that of (u, v, 1)."""
     bent = _edge_degree(ranges, curve)
@@ -199,7 +199,7 @@ def _sphere_bounds(ranges: Ranges, curve: Curve, surface: Surface) -> tuple[Arra
     return np.where(near, bounds, np.inf), np.linalg.norm(x - c, axis=2).max(axis=1)
 
 
-def _edge_degree(ranges: Ranges, curve: Curve) -> int | None:
+def _edge_degree(ranges: TrimRanges, curve: Curve) -> int | None:
     """The degree of an edge's polynomial over ranges; None where they are too long for one."""
     if ranges.net is not None:
         return int(ranges.net.shape[1] - 1)
@@ -207,7 +207,7 @@ def _edge_degree(ranges: Ranges, curve: Curve) -> int | None:
     return _taylor(0.5 * widest) if isinstance(curve, ConicArc) else 1
 
 
-def _values(ranges: Ranges, curve: Curve, degree: int) -> tuple[Array, Array, Array]:
+def _values(ranges: TrimRanges, curve: Curve, degree: int) -> tuple[Array, Array, Array]:
     """At the Chebyshev points of each range for polynomials of a degree: homogeneous (u, v), and
     the edge's points and weights."""
     nodes = chebyshev_points(POINTS * degree)

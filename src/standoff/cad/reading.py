@@ -33,7 +33,7 @@ FIRST_LINE = 2.0
 store.code_digest()  # now: later it may be that of sources which this process does not run
 
 
-class Options(NamedTuple):
+class ReadingOptions(NamedTuple):
     """What is asked of reading, checked."""
 
     unit: str
@@ -50,7 +50,7 @@ class Options(NamedTuple):
         return (self.heal, self.accuracy, self.tolerance)
 
 
-class Solids(NamedTuple):
+class FileSolids(NamedTuple):
     """What a file holds: its unit; of each instance name, pose, colour and which solid it is; the
     solids; and whether all of it was in the store."""
 
@@ -234,7 +234,9 @@ def from_shape(
         return _assembly(_made(instances, "", options, watch), options, watch)
 
 
-def _checked(unit: str, heal: bool, keep: str, tolerance: float | None, workers: int) -> Options:
+def _checked(
+    unit: str, heal: bool, keep: str, tolerance: float | None, workers: int
+) -> ReadingOptions:
     if unit:
         known_unit(unit)
     if not isinstance(heal, bool):
@@ -242,7 +244,7 @@ def _checked(unit: str, heal: bool, keep: str, tolerance: float | None, workers:
     if keep not in ("all", "readable"):
         raise StandoffError(f"keep = {shown(keep)}: give 'all' or 'readable'.", "keep", keep)
     allowed = None if tolerance is None else magnitude(tolerance, "tolerance")
-    return Options(unit, heal, keep, allowed, whole_number(workers, "workers"))
+    return ReadingOptions(unit, heal, keep, allowed, whole_number(workers, "workers"))
 
 
 def _numbered(instances: Sequence[Any]) -> list[Any]:
@@ -274,12 +276,12 @@ def _watched(source: str) -> Iterator[Watch]:
             first.cancel()
 
 
-def _read(file: Path, kind: str, options: Options) -> Assembly:
+def _read(file: Path, kind: str, options: ReadingOptions) -> Assembly:
     with _watched(file.name) as watch:
         return _assembly(_solids_of(file, kind, options, watch), options, watch)
 
 
-def _solids_of(file: Path, kind: str, options: Options, watch: Watch) -> Solids:
+def _solids_of(file: Path, kind: str, options: ReadingOptions, watch: Watch) -> FileSolids:
     """What the store has of a file of these bytes, or else what is made of it."""
     key = _key(file, kind, options)
     found = _stored(key)
@@ -293,20 +295,20 @@ def _solids_of(file: Path, kind: str, options: Options, watch: Watch) -> Solids:
     return _made(_numbered(instances), file_unit, options, watch, key)
 
 
-def _key(file: Path, kind: str, options: Options) -> str:
+def _key(file: Path, kind: str, options: ReadingOptions) -> str:
     named = file.stem if kind == "brep" else ""  # its part has the file's name
     with file.open("rb") as stream:
         content = file_digest(stream, "sha256").digest()
     return store.key_of(content, kind, named, options.unit, options.making)
 
 
-def _stored(key: str) -> Solids | None:
+def _stored(key: str) -> FileSolids | None:
     content = store.taken(key)
     if content is None:
         return None
     file_unit, placed, keys = pickle.loads(content)
     solids = [one for key in keys if (one := stored(key)) is not None]
-    return Solids(file_unit, placed, solids, True) if len(solids) == len(keys) else None
+    return FileSolids(file_unit, placed, solids, True) if len(solids) == len(keys) else None
 
 
 def _instances(file: Path, kind: str, unit: str) -> tuple[list[Any], str]:
@@ -323,18 +325,18 @@ def _instances(file: Path, kind: str, unit: str) -> tuple[list[Any], str]:
 
 
 def _made(
-    instances: Sequence[Any], file_unit: str, options: Options, watch: Watch, key: str = ""
-) -> Solids:
+    instances: Sequence[Any], file_unit: str, options: ReadingOptions, watch: Watch, key: str = ""
+) -> FileSolids:
     """Make each solid once; `key` is the file's in the store."""
     solids, keys, numbers = finished_solids(instances, options.making, options.workers, watch)
     placed = [(i.name, i.pose, i.colour, k) for i, k in zip(instances, numbers, strict=True)]
     if key and solids:
         store.put(key, pickle.dumps((file_unit, placed, keys)))
     store.trim()
-    return Solids(file_unit, placed, solids, False)
+    return FileSolids(file_unit, placed, solids, False)
 
 
-def _assembly(read: Solids, options: Options, watch: Watch) -> Assembly:
+def _assembly(read: FileSolids, options: ReadingOptions, watch: Watch) -> Assembly:
     """Raise if a part is refused, unless only the readable ones are wanted."""
     source = watch.source
     if not read.placed:

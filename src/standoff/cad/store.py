@@ -41,7 +41,7 @@ READERS = ("bodies", "cad", "checks", "geometry", "kernels", "motion", "solids")
 """Packages that a finished part follows from."""
 
 
-class Entry(NamedTuple):
+class StoredFile(NamedTuple):
     """A file of the store, its size in bytes, and when it was used last, s."""
 
     file: Path
@@ -151,21 +151,21 @@ def _seal(key: str, content: bytes) -> bytes:
     return hashlib.sha256(key.encode() + content).digest()
 
 
-def entries() -> list[Entry]:
+def entries() -> list[StoredFile]:
     """The files of the store, those used last at the end."""
     return sorted((e for e in _listed() if not _written(e)), key=lambda entry: entry.used)
 
 
-def _listed() -> Iterator[Entry]:
+def _listed() -> Iterator[StoredFile]:
     with suppress(OSError), os.scandir(folder()) as found:
         for each in found:
             with suppress(OSError):  # another program removed it
                 if each.name.endswith(ENDING) and each.is_file(follow_symlinks=False):
                     state = each.stat()
-                    yield Entry(Path(each.path), state.st_size, state.st_mtime)
+                    yield StoredFile(Path(each.path), state.st_size, state.st_mtime)
 
 
-def _written(entry: Entry) -> bool:
+def _written(entry: StoredFile) -> bool:
     """Is it a file that `write_whole` has not finished?"""
     return entry.file.name.startswith(".")
 

@@ -17,14 +17,14 @@ from standoff.clearance.picture import (
     ON_TOP,
     OTHERS,
     THROUGH,
-    Part,
+    PicturedPart,
     bodies_legend,
     colour_of,
     numbered_rows,
     pairs_legend,
     parts_of,
 )
-from standoff.clearance.report import Report, Row
+from standoff.clearance.report import PairRow, Report
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import of_extra
 from standoff.motion import Pose
@@ -73,8 +73,8 @@ def assembly_figure(
 
 def _draw_parts(
     axes: Any,
-    parts: Sequence[Part],
-    rows: Sequence[Row],
+    parts: Sequence[PicturedPart],
+    rows: Sequence[PairRow],
     coloured: Sequence[str],
     colours: Mapping[str, Any],
     towards: Array,
@@ -106,7 +106,7 @@ def _draw_parts(
     axes.add_collection3d(Line3DCollection(lines, colors=EDGE, linewidths=0.35, alpha=0.5))
 
 
-def _draw_pairs(axes: Any, rows: Sequence[Row]) -> list[Array]:
+def _draw_pairs(axes: Any, rows: Sequence[PairRow]) -> list[Array]:
     found = []
     for number, row in enumerate(rows, 1):
         ends = np.array([row.answer.point_a, row.answer.point_b])

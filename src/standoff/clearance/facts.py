@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from standoff.clearance.report import Report, Row, reason_of
+from standoff.clearance.report import PairRow, Report, reason_of
 from standoff.clearance.verdicts import touching_tolerance
 from standoff.wording import printable
 
@@ -50,13 +50,13 @@ def report_facts(report: Report) -> dict[str, Any]:
     }
 
 
-def in_cavity(row: Row) -> str | None:
+def in_cavity(row: PairRow) -> str | None:
     """Return the name of the body that is in a closed cavity of the other, if one is."""
     which = getattr(row.answer, "cavity", "")
     return str(row.answer.names["AB".index(which)]) if which else None
 
 
-def body_text(row: Row) -> list[str]:
+def body_text(row: PairRow) -> list[str]:
     """Return the names of the two bodies, each with that of its piece, and which is in a cavity."""
     answer, within = row.answer, in_cavity(row)
     return [
@@ -65,7 +65,7 @@ def body_text(row: Row) -> list[str]:
     ]
 
 
-def row_facts(row: Row) -> dict[str, Any]:
+def row_facts(row: PairRow) -> dict[str, Any]:
     """Return one near pair."""
     answer, fit = row.answer, row.fit
     return {

@@ -12,7 +12,7 @@ from pathlib import Path
 from standoff.checks.names import did_you_mean
 from standoff.scene.errors import SceneError
 from standoff.scene.files import text_of, toml_tables
-from standoff.scene.reader import Table, shown
+from standoff.scene.reader import SceneTable, shown
 
 VERSION = 1
 """The version of the file's format."""
@@ -103,7 +103,7 @@ def load_fits(file: str | os.PathLike[str]) -> tuple[Fit, ...]:
         content = toml_tables(text_of(path))
     except SceneError as error:
         raise error.found_in(path) from error
-    top = Table(content, file=path)
+    top = SceneTable(content, file=path)
     version = top.required("version", f"version = {VERSION}")
     if type(version) is not int or version != VERSION:
         raise top.error(f"is {shown(version)}; this Standoff reads version {VERSION}", "version")
@@ -122,7 +122,7 @@ def load_fits(file: str | os.PathLike[str]) -> tuple[Fit, ...]:
     return tuple(found)
 
 
-def _gap(table: Table) -> tuple[float, float]:
+def _gap(table: SceneTable) -> tuple[float, float]:
     """The range of the gap: as it is given, or that of a contact."""
     if table.only_one(("depth", "gap")) != "gap":
         return 0.0 - table.not_negative("depth", 0.0), math.inf

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from standoff.clearance.report import Nearest, horizon, uncertified_in
+from standoff.clearance.report import LeastGap, horizon, uncertified_in
 from standoff.progress import Progress
 from standoff.scene.scene import Scene
 from standoff.tracking.status import Status
@@ -43,7 +43,7 @@ class Walked(NamedTuple):
     clearance: Array
     closest: list[NamePair | None]
     distance: Array
-    near: dict[NamePair, Nearest]
+    near: dict[NamePair, LeastGap]
     counts: list[WorldCounts]
 
     @property
@@ -81,7 +81,7 @@ class LeastOfAll:
     """The least of each pair over the frames that it is told."""
 
     def __init__(self) -> None:
-        self.near: dict[NamePair, Nearest] = {}
+        self.near: dict[NamePair, LeastGap] = {}
         self._times: list[float] = []
         self._clearance: list[float] = []
         self._closest: list[NamePair | None] = []
@@ -117,12 +117,12 @@ class LeastOfAll:
         order, lower = found
         known, (uncertified, statuses) = self.near.get(names), uncertified_in(status)
         if known is None:
-            self.near[names] = Nearest(answer.pairs[k], time, lower, uncertified, statuses)
+            self.near[names] = LeastGap(answer.pairs[k], time, lower, uncertified, statuses)
             self._order[names] = order
         elif uncertified or lower < known.lower_bound or order < self._order[names]:
             nearer = order < self._order[names]
             self._order[names] = min(order, self._order[names])
-            self.near[names] = Nearest(
+            self.near[names] = LeastGap(
                 answer.pairs[k] if nearer else known.answer,
                 time if nearer else known.time,
                 min(lower, known.lower_bound),
@@ -150,6 +150,6 @@ def walk(scene: Scene, world: World, times: Array, progress: Progress | None = N
     return least.walked()
 
 
-def bounds_over(world: World, near: dict[NamePair, Nearest]) -> dict[NamePair, float]:
+def bounds_over(world: World, near: dict[NamePair, LeastGap]) -> dict[NamePair, float]:
     """Return bounds of the pairs that were never near: each kept beyond its horizon."""
     return {names: horizon(world, names) for names in world.pairs() if names not in near}

@@ -19,9 +19,9 @@ from standoff.clearance.matrix import matrix_figure
 from standoff.clearance.picture import numbered_rows, world_figure
 from standoff.clearance.report import (
     COMMON,
-    Looked,
+    Instants,
+    PairRow,
     Report,
-    Row,
     Wanted,
     bound_texts,
     common_text,
@@ -62,14 +62,14 @@ img { max-width: 100%; height: auto; } footer { color: #666; margin-top: 2rem; f
 """
 
 
-def page_of(scene: Source, report: Report, looked: Looked) -> str:
+def page_of(scene: Source, report: Report, looked: Instants) -> str:
     """Return the page.
 
     Parameters
     ----------
     scene : Scene or AssemblyFile
     report : Report
-    looked : Looked
+    looked : Instants
         When the bodies were looked at. Over several frames the picture shows them at the instant
         of the worst pair.
     """
@@ -110,7 +110,7 @@ def _unit_told(unit: str, kind: str) -> str:
     return escape(unit) if unit else f"the {kind}'s unit"
 
 
-def _pictured(scene: Source, report: Report, looked: Looked) -> tuple[float, Report]:
+def _pictured(scene: Source, report: Report, looked: Instants) -> tuple[float, Report]:
     """The instant of the picture, and the report on it: over several frames that of the worst pair
     of which a body moves."""
     if looked.frames == 1 or isinstance(scene, AssemblyFile):
@@ -129,7 +129,7 @@ def _poses(scene: Source, report: Report, time: float) -> dict[str, Pose]:
     return moving | report.world.fixed_poses
 
 
-def _summary(scene: Source, report: Report, looked: Looked) -> str:
+def _summary(scene: Source, report: Report, looked: Instants) -> str:
     unit = escape(scene.length_unit)
     if isinstance(scene, AssemblyFile):
         when = "at rest"
@@ -204,7 +204,7 @@ def _table(report: Report, unit: str, *, timed: bool) -> str:
     )
 
 
-def _row(row: Row, number: str, *, timed: bool, volumes: bool) -> str:
+def _row(row: PairRow, number: str, *, timed: bool, volumes: bool) -> str:
     answer = row.answer
     size = shown_size(answer)
     lower, upper = bound_texts(row)

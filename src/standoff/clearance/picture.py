@@ -14,10 +14,10 @@ import scipy
 from standoff.bodies.body import Body
 from standoff.bodies.drawing.body_view import FACE_COLOURS, across, direction_to_viewer, frame
 from standoff.bodies.drawing.pair_picture import USUAL_VIEW, seen_from
-from standoff.bodies.drawing.solids import Look, Solid, draw_solid, solid_of
+from standoff.bodies.drawing.solids import Look, PictureSurface, draw_solid, solid_of
 from standoff.bodies.tessellation import EdgeLine
 from standoff.bodies.tolerances import FLAT_CLOUD
-from standoff.clearance.report import Report, Row, gap_text
+from standoff.clearance.report import PairRow, Report, gap_text
 from standoff.clearance.verdicts import Verdict
 from standoff.errors import of_extra
 from standoff.motion import Pose
@@ -59,11 +59,11 @@ ON_TOP = 10_000
 """Order in which the closest points are drawn: above all bodies."""
 
 
-class Part(NamedTuple):
+class PicturedPart(NamedTuple):
     """A piece of a body, where it is in the world."""
 
     owner: str
-    solid: Solid
+    solid: PictureSurface
     pose: Pose
 
     @property
@@ -77,7 +77,7 @@ class Part(NamedTuple):
         return np.asarray(self.pose.apply(self.solid.points))
 
 
-def numbered_rows(report: Report) -> tuple[Row, ...]:
+def numbered_rows(report: Report) -> tuple[PairRow, ...]:
     """Return the pairs whose closest points are drawn: the worst ones."""
     return report.rows[:MOST_PAIRS]
 
@@ -112,13 +112,15 @@ def world_figure(report: Report, poses: Mapping[str, Pose], unit: str) -> Figure
     return figure
 
 
-def parts_of(world: World, poses: Mapping[str, Pose], coloured: Sequence[str]) -> list[Part]:
+def parts_of(
+    world: World, poses: Mapping[str, Pose], coloured: Sequence[str]
+) -> list[PicturedPart]:
     """Return the pieces of a world's bodies as they are drawn; of very many those of the coloured
     bodies alone."""
     bodies = world.bodies
     count = sum(len(b) if isinstance(b, Compound) else 1 for b in bodies.values())
     names = list(bodies) if count <= MOST_PIECES else list(coloured)
-    solids: dict[int, Solid] = {}
+    solids: dict[int, PictureSurface] = {}
     parts = []
     for name in names:
         body = bodies[name]
@@ -126,21 +128,23 @@ def parts_of(world: World, poses: Mapping[str, Pose], coloured: Sequence[str]) -
         for shape, pose in pieces:
             if id(shape) not in solids:
                 solids[id(shape)] = _drawn(boundary_of(shape))
-            parts.append(Part(name, solids[id(shape)], poses[name] @ pose))
+            parts.append(PicturedPart(name, solids[id(shape)], poses[name] @ pose))
     return parts
 
 
-def _drawn(shape: Any) -> Solid:
+def _drawn(shape: Any) -> PictureSurface:
     """A body's surface, or the edges of a planar solid."""
     if not hasattr(shape, "outline"):
         return solid_of(shape)
     lines = [line for loop in shape.loops for line in points_along(loop)]
     none, empty = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64)
     edges = [EdgeLine(k, line, none[None], False) for k, line in enumerate(lines)]
-    return Solid(shape, np.concatenate(lines), none, empty, empty[:, 0], edges)
+    return PictureSurface(shape, np.concatenate(lines), none, empty, empty[:, 0], edges)
 
 
-def _looks(parts: Sequence[Part], rows: Sequence[Row], coloured: Sequence[str]) -> list[Look]:
+def _looks(
+    parts: Sequence[PicturedPart], rows: Sequence[PairRow], coloured: Sequence[str]
+) -> list[Look]:
     """Colour and opacity of each part; the order is set later."""
     deep = {name for row in rows if row.verdict is Verdict.OVERLAPPING for name in row.names}
     looks = []
@@ -159,7 +163,7 @@ def colour_of(name: str, coloured: Sequence[str]) -> str:
 
 
 def _draw_spatial(
-    figure: Figure, parts: list[Part], looks: list[Look], rows: Sequence[Row], unit: str
+    figure: Figure, parts: list[PicturedPart], looks: list[Look], rows: Sequence[PairRow], unit: str
 ) -> None:
     axes: Any = figure.add_axes((0.0, 0.12, 1.0, 0.88), projection="3d", computed_zorder=False)
     towards = direction_to_viewer(USUAL_VIEW)
@@ -183,7 +187,7 @@ def _draw_spatial(
     frame(axes, seen_from(cloud, towards), 0.0, towards, unit)
 
 
-def _draw_outline(axes: Any, part: Part, towards: Array, look: Look) -> None:
+def _draw_outline(axes: Any, part: PicturedPart, towards: Array, look: Look) -> None:
     """A body as one translucent area, which is convex as the body is: between triangles hairlines
     would show."""
     cloud = part.cloud
@@ -207,7 +211,7 @@ def _draw_outline(axes: Any, part: Part, towards: Array, look: Look) -> None:
     )
 
 
-def back_to_front(parts: Sequence[Part], towards: Array) -> list[int]:
+def back_to_front(parts: Sequence[PicturedPart], towards: Array) -> list[int]:
     """Return the order in which parts are drawn: none over one that is in front of it.
 
     A plane across the normal parts two convex bodies, and so says which one is in front; of those
@@ -236,7 +240,7 @@ def back_to_front(parts: Sequence[Part], towards: Array) -> list[int]:
         return sorted(range(len(parts)), key=depth.__getitem__)
 
 
-def _forward(a: Part, b: Part, towards: Array) -> float:
+def _forward(a: PicturedPart, b: PicturedPart, towards: Array) -> float:
     """Above zero where b is in front of a, below where it is behind, 0 where neither is known."""
     bodies: list[Body] = [a.solid.body, b.solid.body]
     if not any(body.bounded for body in bodies):
@@ -246,7 +250,7 @@ def _forward(a: Part, b: Part, towards: Array) -> float:
 
 
 def _draw_planar(
-    figure: Figure, parts: list[Part], looks: list[Look], rows: Sequence[Row], unit: str
+    figure: Figure, parts: list[PicturedPart], looks: list[Look], rows: Sequence[PairRow], unit: str
 ) -> None:
     axes = figure.add_axes((0.1, 0.22, 0.86, 0.74))
     for part, look in zip(parts, looks, strict=True):
@@ -280,7 +284,7 @@ def bodies_legend(coloured: Sequence[str], colours: Mapping[str, Any]) -> list[A
     return [Patch(facecolor=colours[name], label=short_name(name)) for name in coloured]
 
 
-def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
+def pairs_legend(rows: Sequence[PairRow], unit: str) -> list[Artist]:
     handles: list[Artist] = []
     for number, row in enumerate(rows, 1):
         a, b = (short_name(name) for name in row.names)
@@ -298,7 +302,7 @@ def pairs_legend(rows: Sequence[Row], unit: str) -> list[Artist]:
     return handles
 
 
-def undecided_gap(row: Row, unit: str) -> str:
+def undecided_gap(row: PairRow, unit: str) -> str:
     """What is known of a pair that is not decided: the interval of its gap, below 0 a depth."""
     low, high = row.nearest.lower_bound, row.answer.upper_bound
     unit = f" {unit}" if unit else ""

@@ -21,7 +21,7 @@ MOST_BOUNDED = 20_000
 horizon, which is proven of each."""
 
 
-class Nearest(NamedTuple):
+class LeastGap(NamedTuple):
     """The least of a near pair over one frame or many.
 
     Attributes
@@ -70,7 +70,7 @@ class Wanted(NamedTuple):
         return max(self.least or 0.0, *(end for end in ends if end < math.inf), 0.0)
 
 
-class Looked(NamedTuple):
+class Instants(NamedTuple):
     """When the bodies were looked at.
 
     Attributes
@@ -86,12 +86,12 @@ class Looked(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Row:
+class PairRow:
     """One near pair of the report.
 
     Attributes
     ----------
-    nearest : Nearest
+    nearest : LeastGap
     verdict : Verdict
     required : float or None
         The clearance that it must keep: the greater of the one asked for and the pair's margin.
@@ -106,7 +106,7 @@ class Row:
         overlap, by OpenCASCADE's boolean operation: it is not proven. nan: the operation failed.
     """
 
-    nearest: Nearest
+    nearest: LeastGap
     verdict: Verdict
     required: float | None
     fit: Fit | None
@@ -158,7 +158,7 @@ class Report:
     Attributes
     ----------
     world : World
-    rows : tuple of Row
+    rows : tuple of PairRow
         The near pairs, those that fail first, then by their lower bounds.
     far : tuple of Far
         The other pairs that count, by their bounds.
@@ -170,7 +170,7 @@ class Report:
     """
 
     world: World
-    rows: tuple[Row, ...]
+    rows: tuple[PairRow, ...]
     far: tuple[Far, ...]
     fits: tuple[FitNote, ...]
     least: float | None
@@ -217,10 +217,10 @@ def uncertified_in(status: Status) -> tuple[int, tuple[Status, ...]]:
     return (0, ()) if status.certified else (1, (status,))
 
 
-def nearest_of(answer: WorldAnswer, time: float) -> dict[tuple[str, str], Nearest]:
+def nearest_of(answer: WorldAnswer, time: float) -> dict[tuple[str, str], LeastGap]:
     """Return the near pairs of one frame."""
     return {
-        pair.names: Nearest(pair, time, pair.lower_bound, *uncertified_in(pair.status))
+        pair.names: LeastGap(pair, time, pair.lower_bound, *uncertified_in(pair.status))
         for pair in answer.pairs
     }
 
@@ -243,7 +243,7 @@ def horizon(world: World, names: tuple[str, str]) -> float:
 
 def report_on(
     world: World,
-    near: Mapping[tuple[str, str], Nearest],
+    near: Mapping[tuple[str, str], LeastGap],
     bounds: Mapping[tuple[str, str], float],
     wanted: Wanted,
 ) -> Report:
@@ -288,7 +288,7 @@ def _required(world: World, names: tuple[str, str], wanted: Wanted) -> float | N
     return max(margin, wanted.least)
 
 
-def _row(world: World, nearest: Nearest, wanted: Wanted, fit: Fit | None) -> Row:
+def _row(world: World, nearest: LeastGap, wanted: Wanted, fit: Fit | None) -> PairRow:
     names, answer, lower = nearest.answer.names, nearest.answer, nearest.lower_bound
     verdict, required = verdict_of(answer), _required(world, names, wanted)
     tolerance = touching_tolerance(answer) if wanted.tolerance is None else wanted.tolerance
@@ -302,7 +302,7 @@ def _row(world: World, nearest: Nearest, wanted: Wanted, fit: Fit | None) -> Row
         failure = not_kept(required, lower) + _nearly_kept(required, nearest)
     elif wanted.fits is not None and verdict in (Verdict.OVERLAPPING, Verdict.UNDECIDED):
         failure = f"{verdict.name.lower()}, and not among the fits that are allowed"
-    return Row(nearest, verdict, required, fit, failure, tolerance)
+    return PairRow(nearest, verdict, required, fit, failure, tolerance)
 
 
 def _keeps(lower: float, required: float, tolerance: float) -> bool:
@@ -310,7 +310,7 @@ def _keeps(lower: float, required: float, tolerance: float) -> bool:
     return lower >= required or (lower > 0.0 and lower >= required - tolerance)
 
 
-def _not_allowed(fit: Fit, nearest: Nearest) -> str:
+def _not_allowed(fit: Fit, nearest: LeastGap) -> str:
     """Why a pair is not the fit that is meant; empty where it is proven to be."""
     lower, upper = nearest.lower_bound, nearest.answer.upper_bound
     (low, high), tolerance = fit.gap, touching_tolerance(nearest.answer)
@@ -341,7 +341,7 @@ def gap_text(answer: PairAnswer | SolidPairAnswer, digits: int = 6) -> str:
     return at_least(gap + SHOWN_ROUNDOFF * size if gap else gap, digits)
 
 
-def bound_texts(row: Row) -> tuple[str, str]:
+def bound_texts(row: PairRow) -> tuple[str, str]:
     """Return the lower and the upper bound of a row, each rounded to its safe side."""
     return at_least(row.nearest.lower_bound), at_most(row.answer.upper_bound)
 
@@ -349,7 +349,7 @@ def bound_texts(row: Row) -> tuple[str, str]:
 COMMON = "volumes in common are by OpenCASCADE's boolean operation, not proven"
 
 
-def common_text(row: Row) -> str:
+def common_text(row: PairRow) -> str:
     """Return the volume that both bodies of a row have in common, as far as it is known."""
     if row.common is None:
         return ""
@@ -396,7 +396,7 @@ def not_kept(required: float, lower: float) -> str:
     return f"not proven to keep {required:.15g}: at least {known} apart, {missing} too little"
 
 
-def _nearly_kept(required: float, nearest: Nearest) -> str:
+def _nearly_kept(required: float, nearest: LeastGap) -> str:
     """Said of a pair made for the very clearance that is asked: why it fails, and what to ask."""
     tolerance = touching_tolerance(nearest.answer)
     if not required - nearest.lower_bound <= tolerance < required:
@@ -423,7 +423,7 @@ def _far_failure(
 def _note(
     world: World,
     fit: Fit,
-    rows: Sequence[Row],
+    rows: Sequence[PairRow],
     far: Sequence[Far],
     of_far: Mapping[tuple[str, str], Fit | None],
 ) -> FitNote:

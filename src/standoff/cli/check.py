@@ -22,7 +22,7 @@ from standoff.cli.errors import ExitCode, MissingExtra
 from standoff.cli.facts import json_text
 from standoff.cli.output import Writer, kind_of_picture, picture_targets, write_whole
 from standoff.cli.part_file import check_meshes
-from standoff.cli.subject import Subject, subjects
+from standoff.cli.subject import CheckedSubject, subjects
 from standoff.cli.terminal import tell
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.solid import Solid
@@ -57,7 +57,7 @@ def run_check(command: CheckCommand) -> int:
     return ExitCode.DONE
 
 
-def _files(found: list[Subject], plot: Path | None) -> dict[Path, Writer]:
+def _files(found: list[CheckedSubject], plot: Path | None) -> dict[Path, Writer]:
     targets = picture_targets(plot, [subject.name for subject in found])
     return {
         target: _writer(subject, kind_of_picture(target))
@@ -65,7 +65,7 @@ def _files(found: list[Subject], plot: Path | None) -> dict[Path, Writer]:
     }
 
 
-def _writer(subject: Subject, ending: str) -> Writer:
+def _writer(subject: CheckedSubject, ending: str) -> Writer:
     try:
         from standoff.bodies.drawing.body_picture import draw_body
     except ModuleNotFoundError as error:
@@ -81,7 +81,7 @@ def _writer(subject: Subject, ending: str) -> Writer:
     return write
 
 
-def _json(found: list[Subject], files: list[Path]) -> str:
+def _json(found: list[CheckedSubject], files: list[Path]) -> str:
     facts = [_facts(subject) for subject in found]
     written = {"files": [str(path) for path in files]}
     if len(facts) == 1:
@@ -93,7 +93,7 @@ def _is_planar_solid(shape: Any) -> bool:
     return is_solid(shape) and dimension_of_shape(shape) == 2
 
 
-def _facts(subject: Subject) -> dict[str, Any]:
+def _facts(subject: CheckedSubject) -> dict[str, Any]:
     body = boundary_of(subject.body)
     if _is_planar_solid(body):
         return {
@@ -117,7 +117,7 @@ def _facts(subject: Subject) -> dict[str, Any]:
     }
 
 
-def _table(subject: Subject) -> Table:
+def _table(subject: CheckedSubject) -> Table:
     body = subject.body
     table = Table(
         "what",

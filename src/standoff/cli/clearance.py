@@ -8,7 +8,7 @@ from typing import Any
 from standoff.clearance.checked_pairs import check, narrowed
 from standoff.clearance.facts import report_facts
 from standoff.clearance.over_time import bounds_over, walk
-from standoff.clearance.report import Looked, Report, Wanted, report_on
+from standoff.clearance.report import Instants, Report, Wanted, report_on
 from standoff.cli.arguments import ClearanceCommand
 from standoff.cli.check_cad import no_cad_file
 from standoff.cli.clearance_files import check_files, files_of
@@ -56,7 +56,7 @@ def run_clearance(command: ClearanceCommand) -> int:
 
 def _looked(
     command: ClearanceCommand, scene: Scene, world: World, wanted: Wanted, times: Array | None
-) -> tuple[Report, Looked]:
+) -> tuple[Report, Instants]:
     scope = scope_of(command)
     try:
         if times is not None:
@@ -64,7 +64,7 @@ def _looked(
             with progress_bar() as progress:
                 walked = walk(scene, world, times, progress)
             bounds = bounds_over(world, walked.near)
-            looked = Looked(float(times[0]), float(times[-1]), len(times))
+            looked = Instants(float(times[0]), float(times[-1]), len(times))
             return report_on(world, walked.near, bounds, wanted), looked
         time = scene.instant(command.time)
         with progress_bar("distances of pairs") as progress:
@@ -76,10 +76,10 @@ def _looked(
         raise
     except (ValueError, TypeError) as error:
         raise option_error(error) or SceneError(str(error), key="world", file=scene.file) from error
-    return report, Looked(time, time, 1)
+    return report, Instants(time, time, 1)
 
 
-def _facts(scene: Scene, report: Report, looked: Looked, written: list[Path]) -> dict[str, Any]:
+def _facts(scene: Scene, report: Report, looked: Instants, written: list[Path]) -> dict[str, Any]:
     return (
         world_facts(scene)
         | {"start": looked.start, "end": looked.end, "frames": looked.frames}

@@ -12,7 +12,7 @@ from standoff.checks.units import conversion
 from standoff.clearance.assembly import AssemblyFile
 from standoff.clearance.checked_pairs import Scope, check
 from standoff.clearance.facts import report_facts
-from standoff.clearance.report import Looked, Report, Wanted
+from standoff.clearance.report import Instants, Report, Wanted
 from standoff.clearance.verdicts import Verdict
 from standoff.cli.arguments import ClearanceCommand
 from standoff.cli.check_cad import no_cad_file
@@ -30,7 +30,7 @@ from standoff.motion import Pose
 from standoff.version import __version__
 from standoff.world import World
 
-NOTHING_MOVES = Looked(0.0, 0.0, 1)
+NOTHING_MOVES = Instants(0.0, 0.0, 1)
 
 
 def run_on_assembly(command: ClearanceCommand) -> int:

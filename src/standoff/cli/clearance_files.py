@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from standoff.clearance.assembly import Source
-from standoff.clearance.report import Looked, Report
+from standoff.clearance.report import Instants, Report
 from standoff.cli.arguments import ClearanceCommand
 from standoff.cli.errors import MissingExtra
 from standoff.cli.output import PLOT_ENDINGS, Writer, check_target, kind_of_picture
@@ -28,7 +28,7 @@ def check_files(command: ClearanceCommand) -> None:
 
 
 def files_of(
-    command: ClearanceCommand, scene: Source, report: Report, looked: Looked
+    command: ClearanceCommand, scene: Source, report: Report, looked: Instants
 ) -> dict[Path, Writer]:
     """What writes each file that is asked for."""
     files: dict[Path, Writer] = {}

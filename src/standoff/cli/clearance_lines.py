@@ -16,9 +16,9 @@ from standoff.clearance.facts import body_text
 from standoff.clearance.report import (
     COMMON,
     Far,
-    Looked,
+    Instants,
+    PairRow,
     Report,
-    Row,
     bound_texts,
     common_text,
     gap_text,
@@ -48,7 +48,7 @@ STYLES = {
 
 
 def print_report(
-    scene: Source, report: Report, looked: Looked, written: Sequence[Path], listed: int | None
+    scene: Source, report: Report, looked: Instants, written: Sequence[Path], listed: int | None
 ) -> None:
     """Print a report: what was looked at, the table of near pairs, of them only the first `listed`
     where that is given, else with all that are far, and what follows from it."""
@@ -63,7 +63,7 @@ def print_report(
     tell("\n".join(_tail(scene, report, looked, written, listed)))
 
 
-def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
+def _head(scene: Source, report: Report, looked: Instants) -> list[str]:
     world = report.world
     count = len(report.rows) + len(report.far)
     lines = [
@@ -85,7 +85,7 @@ def _head(scene: Source, report: Report, looked: Looked) -> list[str]:
     ]
 
 
-def _table(rows: Sequence[Row], far: Sequence[Far], unit: str, *, timed: bool) -> Table:
+def _table(rows: Sequence[PairRow], far: Sequence[Far], unit: str, *, timed: bool) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     table.add_column("verdict")
     table.add_column("bodies", overflow="fold")
@@ -113,12 +113,12 @@ def _table(rows: Sequence[Row], far: Sequence[Far], unit: str, *, timed: bool) -
     return table
 
 
-def _proven(row: Row) -> str:
+def _proven(row: PairRow) -> str:
     lower, upper = bound_texts(row)
     return f"≥ {lower}\n≤ {upper}"
 
 
-def _points(row: Row) -> str:
+def _points(row: PairRow) -> str:
     answer, size = row.answer, shown_size(row.answer)
     return "\n".join(
         vector_text(point, size, POINT_DIGITS) for point in (answer.point_a, answer.point_b)
@@ -126,7 +126,7 @@ def _points(row: Row) -> str:
 
 
 def _tail(
-    scene: Source, report: Report, looked: Looked, written: Sequence[Path], listed: int | None
+    scene: Source, report: Report, looked: Instants, written: Sequence[Path], listed: int | None
 ) -> list[str]:
     unit = scene.length_unit
     lines = []
@@ -164,7 +164,7 @@ def _tail(
     return [*lines, *(line("wrote" if k == 0 else "", str(p)) for k, p in enumerate(written))]
 
 
-def _certified(report: Report, looked: Looked) -> list[str]:
+def _certified(report: Report, looked: Instants) -> list[str]:
     if report.certified:
         return []
     lines = []

@@ -13,7 +13,7 @@ from standoff.scene import SceneError, load_scene
 from standoff.scene.file_content import DEFAULT_LENGTH_UNIT
 from standoff.scene.files import file_problem, toml_tables
 from standoff.scene.part_files import ENDINGS
-from standoff.scene.reader import Table, shown, unknown_name
+from standoff.scene.reader import SceneTable, shown, unknown_name
 from standoff.scene.shapes import read_body
 from standoff.scene.worlds import by_piece
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 EXAMPLE = "'shape = \"box\", size = [0.3, 0.2, 0.1]'"
 
 
-class Subject(NamedTuple):
+class CheckedSubject(NamedTuple):
     """A body or a solid to report on, what it is called, the label of its lengths, and what was
     found when its file was read."""
 
@@ -33,7 +33,7 @@ class Subject(NamedTuple):
     notes: tuple[str, ...] = ()
 
 
-def subjects(command: CheckCommand) -> list[Subject]:
+def subjects(command: CheckCommand) -> list[CheckedSubject]:
     """Return the bodies that a command names; its `body` picks one of them.
 
     Raises CommandError if it names no scene, no file and no shape, or what it names has no such
@@ -46,17 +46,19 @@ def subjects(command: CheckCommand) -> list[Subject]:
     elif path.suffix.lower() == ".toml":
         scene = load_scene(path)
         bodies = by_piece(scene.bodies)
-        found = [Subject(name, made, scene.length_unit) for name, made in bodies.items()]
+        found = [CheckedSubject(name, made, scene.length_unit) for name, made in bodies.items()]
     elif path.suffix.lower() in ENDINGS:
         parts = parts_of(path, command.meshes)
         shapes = by_piece({name: part.shape for name, part in parts.found.items()})
-        found = [Subject(name, made, parts.unit, parts.notes) for name, made in shapes.items()]
+        found = [
+            CheckedSubject(name, made, parts.unit, parts.notes) for name, made in shapes.items()
+        ]
     elif path.suffix.lower() == ".json":
         problem = file_problem(path, what, "the current folder")
         if problem is not None:
             raise CommandError(problem)
-        table = Table({"shape": "patches", "file": what}, path="body")
-        found = [Subject(path.stem, read_body(table), DEFAULT_LENGTH_UNIT)]
+        table = SceneTable({"shape": "patches", "file": what}, path="body")
+        found = [CheckedSubject(path.stem, read_body(table), DEFAULT_LENGTH_UNIT)]
     else:
         raise CommandError(
             f"{shown(what)} is not a scene (.toml), a file of patches (.json) or a shape such as "
@@ -71,7 +73,7 @@ def subjects(command: CheckCommand) -> list[Subject]:
     return chosen
 
 
-def _shape(text: str) -> Subject:
+def _shape(text: str) -> CheckedSubject:
     """The body of a line such as ``shape = "box", size = [1, 2, 3]``."""
     try:
         content = toml_tables(f"body = {{{text}}}")["body"]
@@ -80,5 +82,5 @@ def _shape(text: str) -> Subject:
             f"{shown(text)} is not a shape in the form that scenes use: it {error.problem}; write "
             f"one such as {EXAMPLE}"
         ) from error
-    body = read_body(Table(content, path="body"))
-    return Subject(body.name, body, DEFAULT_LENGTH_UNIT)
+    body = read_body(SceneTable(content, path="body"))
+    return CheckedSubject(body.name, body, DEFAULT_LENGTH_UNIT)

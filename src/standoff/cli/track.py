@@ -42,7 +42,7 @@ def run_track(command: TrackCommand) -> int:
 
         return run_track_world(command, whole, settings_of(whole, command))
     scenes = chosen(whole, command.pair)
-    runs = [_Run.of(scene, command, scenes) for scene in scenes]
+    runs = [_TrackedRun.of(scene, command, scenes) for scene in scenes]
     for run in runs:
         prepare(run.scene, run.settings)
     for run in runs:
@@ -74,7 +74,7 @@ def run_track(command: TrackCommand) -> int:
     return ExitCode.DONE if certified else ExitCode.NOT_CERTIFIED
 
 
-class _Run(NamedTuple):
+class _TrackedRun(NamedTuple):
     """One pair to be tracked, and where its results go."""
 
     scene: Scene
@@ -84,7 +84,7 @@ class _Run(NamedTuple):
     export: Path | None
 
     @classmethod
-    def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _Run:
+    def of(cls, scene: Scene, command: TrackCommand, scenes: tuple[Scene, ...]) -> _TrackedRun:
         output = target_of(command.files.output, "-o", scene, scenes)
         plot = target_of(command.files.plot, "--plot", scene, scenes)
         export = target_of(command.files.export, "--export", scene, scenes)

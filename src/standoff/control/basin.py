@@ -15,7 +15,7 @@ from standoff.control.tolerances import FOUND_MINIMUM, SETTLED_RUN
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import PoseLike
 from standoff.tracking import Tracker, calls, distance
-from standoff.tracking.calls import DESCEND, HERE, Frame
+from standoff.tracking.calls import DESCEND, HERE, FrameInput
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.places import PlaceLike, put
@@ -133,7 +133,7 @@ class AtRest:
 
     def __init__(self, tracker: Tracker, flat_a: Array, flat_b: Array, steps: int) -> None:
         self.tracker = tracker
-        self.frame = Frame(flat_a, flat_b, has_twist=True)
+        self.frame = FrameInput(flat_a, flat_b, has_twist=True)
         self.motions = np.tile(self.frame.row, (steps, 1))
         self.times = np.full(steps, tracker.dt)
         self.given = HERE if isinstance(tracker.law, PaperLaw) else DESCEND

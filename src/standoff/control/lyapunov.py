@@ -133,7 +133,7 @@ def lyapunov_level(
     if system.definiteness(H, L) <= CURVE_TOLERANCE:
         raise _not_definite(best)
 
-    def follow(direction: Array) -> Curve:
+    def follow(direction: Array) -> LyapunovCurve:
         unit = np.asarray(direction / np.linalg.norm(direction))
         return _outwards(system, q0, L, unit, energy)
 
@@ -162,7 +162,7 @@ def _not_definite(best: Proximity) -> StandoffError:
     )
 
 
-def _followed(follow: Callable[[Array], Curve], around: Array) -> list[Curve]:
+def _followed(follow: Callable[[Array], LyapunovCurve], around: Array) -> list[LyapunovCurve]:
     """The curves in given directions, and where there are several parameters both least ones."""
     found = [follow(direction) for direction in around]
     if around.shape[1] > 1:
@@ -181,7 +181,7 @@ def _directions(n: int, count: int, seed: int) -> Array:
     return np.asarray(random / np.linalg.norm(random, axis=1, keepdims=True))
 
 
-class Curve(NamedTuple):
+class LyapunovCurve(NamedTuple):
     """A curve on which g = s L e, as far as H is regular: rows of `LyapunovLevels`."""
 
     points: Array
@@ -192,11 +192,13 @@ class Curve(NamedTuple):
 
 
 def _least(
-    follow: Callable[[Array], Curve], found: list[Curve], value: Callable[[Curve], float]
-) -> Curve:
+    follow: Callable[[Array], LyapunovCurve],
+    found: list[LyapunovCurve],
+    value: Callable[[LyapunovCurve], float],
+) -> LyapunovCurve:
     """The curve with the least value at its end, sought from the best found."""
     best = min(found, key=value)
-    sought: list[Curve] = []
+    sought: list[LyapunovCurve] = []
 
     def end(direction: Array) -> float:
         sought.append(follow(direction))
@@ -210,7 +212,9 @@ def _least(
     return min([best, *sought], key=value)
 
 
-def _outwards(system: RestSystem, q0: Array, L: Array, direction: Array, rest: float) -> Curve:
+def _outwards(
+    system: RestSystem, q0: Array, L: Array, direction: Array, rest: float
+) -> LyapunovCurve:
     """Follow a direction e from the optimum until H is singular or a feature ends.
 
     By length: dq/dt ~ adj(H) L e and ds/dt ~ det H go smoothly through a singular H.
@@ -246,7 +250,7 @@ def _outwards(system: RestSystem, q0: Array, L: Array, direction: Array, rest: f
     )
     at = ended.sol(np.linspace(0.0, ended.t[-1], KEPT)).T
     energies = np.array([system.at(y[:n])[3] - rest for y in at])
-    return Curve(at[:, :n], at[:, n], energies, bool(len(ended.t_events[0])), direction)
+    return LyapunovCurve(at[:, :n], at[:, n], energies, bool(len(ended.t_events[0])), direction)
 
 
 class RestSystem:

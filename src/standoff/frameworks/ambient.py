@@ -51,7 +51,7 @@ for _m, _i, _l in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
     SKEW[_m, _i, _l], SKEW[_m, _l, _i] = -0.5, 0.5
 
 
-class Pair(NamedTuple):
+class AmbientPair(NamedTuple):
     """Two bodies, and what is done where derivatives are not defined."""
 
     a: Body
@@ -59,7 +59,7 @@ class Pair(NamedTuple):
     undefined: str
 
     @classmethod
-    def of(cls, a: Body, b: Body, undefined: str) -> Pair:
+    def of(cls, a: Body, b: Body, undefined: str) -> AmbientPair:
         """The pair, checked."""
         for name, body in (("a", a), ("b", b)):
             if not isinstance(body, Body):
@@ -70,7 +70,7 @@ class Pair(NamedTuple):
         return cls(a, b, undefined)
 
 
-class First(NamedTuple):
+class AmbientGradients(NamedTuple):
     """Distances (...) and their gradients by both matrices, (..., 2, 4, 4)."""
 
     distance: Array
@@ -85,7 +85,7 @@ class Second(NamedTuple):
     hessian: Array
 
 
-class Rows(NamedTuple):
+class AmbientRows(NamedTuple):
     """n answers: derivatives by twists, up to the order that was asked for."""
 
     distance: Array
@@ -99,7 +99,7 @@ class Rows(NamedTuple):
     """Of rows that lack derivatives, their flag and the reason."""
 
 
-def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
+def value(pair: AmbientPair, poses_a: Array, poses_b: Array) -> Array:
     """Distances (...) at poses (..., 4, 4), which are broadcast.
 
     Raises StandoffError if a matrix is not a pose; the first such row is named.
@@ -108,13 +108,13 @@ def value(pair: Pair, poses_a: Array, poses_b: Array) -> Array:
     return rows.distance.reshape(lead)
 
 
-def first(pair: Pair, poses_a: Array, poses_b: Array) -> First:
+def first(pair: AmbientPair, poses_a: Array, poses_b: Array) -> AmbientGradients:
     """Distances and gradients; where they are not defined, as the pair says."""
     rows, lead = _rows(pair, poses_a, poses_b, 1)
-    return First(rows.distance.reshape(lead), by_matrices(rows).reshape(*lead, 2, 4, 4))
+    return AmbientGradients(rows.distance.reshape(lead), by_matrices(rows).reshape(*lead, 2, 4, 4))
 
 
-def second(pair: Pair, poses_a: Array, poses_b: Array) -> Second:
+def second(pair: AmbientPair, poses_a: Array, poses_b: Array) -> Second:
     """Distances, gradients and Hessians; where they are not defined, as the pair says."""
     rows, lead = _rows(pair, poses_a, poses_b, 2)
     twists = _twists(rows)
@@ -150,7 +150,9 @@ def lead_of(shape_a: tuple[int, ...], shape_b: tuple[int, ...]) -> tuple[int, ..
         ) from error
 
 
-def _rows(pair: Pair, poses_a: Array, poses_b: Array, order: int) -> tuple[Rows, tuple[int, ...]]:
+def _rows(
+    pair: AmbientPair, poses_a: Array, poses_b: Array, order: int
+) -> tuple[AmbientRows, tuple[int, ...]]:
     lead = lead_of(poses_a.shape, poses_b.shape)
     found = answered(pair, flat_poses((poses_a, poses_b), lead), order)
     tell(pair.undefined, found.lacking, len(found.distance), 4)
@@ -163,7 +165,7 @@ def flat_poses(poses: Sequence[Array], lead: tuple[int, ...]) -> list[Array]:
     return [np.ascontiguousarray(x).reshape(-1, 4, 4) for x in given]
 
 
-def answered(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
+def answered(pair: AmbientPair, poses: Sequence[Array], order: int) -> AmbientRows:
     """Answers at poses (n, 4, 4), or (1, 4, 4) for all, with their derivatives by twists.
 
     Raises StandoffError if a matrix is not a pose; the first such row is named.
@@ -171,40 +173,42 @@ def answered(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
     return (_one if len(poses[0]) == len(poses[1]) == 1 else _many)(pair, poses, order)
 
 
-def _one(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
+def _one(pair: AmbientPair, poses: Sequence[Array], order: int) -> AmbientRows:
     """By the single query, which takes a fraction of the time of an array of one row."""
     answer = distance(pair.a, pair.b, poses[0][0], poses[1][0])
     number = np.array([answer.distance])
     if not order:
-        return Rows(number, NONE, NONE, (NONE, NONE), answer, {})
+        return AmbientRows(number, NONE, NONE, (NONE, NONE), answer, {})
     derived = answer.derivatives()
     flag, reason = derived.smoothness, derived.reason
     at = answer.poses
     assert at is not None  # a cold answer keeps them
     turns = (at[0][:9].reshape(1, 3, 3), at[1][:9].reshape(1, 3, 3))
     lacking = {0: (flag, reason)} if flag in LACKING else {}
-    return Rows(number, derived.gradient[None], derived.hessian[None], turns, answer, lacking)
+    return AmbientRows(
+        number, derived.gradient[None], derived.hessian[None], turns, answer, lacking
+    )
 
 
-def _many(pair: Pair, poses: Sequence[Array], order: int) -> Rows:
+def _many(pair: AmbientPair, poses: Sequence[Array], order: int) -> AmbientRows:
     found = answered_rows(pair.a, pair.b, *poses)
     if found.errors:
         raise found.errors[min(found.errors)]
     if not order:
-        return Rows(found.distance, NONE, NONE, (NONE, NONE), found, {})
+        return AmbientRows(found.distance, NONE, NONE, (NONE, NONE), found, {})
     turns = (found.poses[0][:, :3, :3], found.poses[1][:, :3, :3])
     derived = found.derivatives()
     missing = np.flatnonzero([flag in LACKING for flag in derived.smoothness]).tolist()
     lacking = {row: (derived.smoothness[row], derived.reasons[row]) for row in missing}
-    return Rows(found.distance, derived.gradient, derived.hessian, turns, found, lacking)
+    return AmbientRows(found.distance, derived.gradient, derived.hessian, turns, found, lacking)
 
 
-def by_matrices(rows: Rows) -> Array:
+def by_matrices(rows: AmbientRows) -> Array:
     """(n, 32) derivatives by the entries of both matrices."""
     return _by_entries(rows.gradient, _twists(rows))
 
 
-def _twists(rows: Rows) -> Array:
+def _twists(rows: AmbientRows) -> Array:
     """(n, 12, 32) twists of unit changes of the entries, the first order."""
     count = len(rows.distance)
     twists = np.zeros((count, 12, 2, 4, 4))

@@ -107,7 +107,7 @@ class Designs(NamedTuple):
             ) from error
 
 
-class First(NamedTuple):
+class DesignGradients(NamedTuple):
     """Distances (...), and their gradients by each array that was given, in its shape."""
 
     distance: Array
@@ -119,7 +119,7 @@ class Set(NamedTuple):
 
     rows: NDArray[np.int64] | slice
     designs: tuple[Body | Design, Body | Design]
-    pair: ambient.Pair
+    pair: ambient.AmbientPair
     poses: list[Array]
 
 
@@ -135,7 +135,7 @@ def value(designs: Designs, *given: Array) -> Array:
     return distance.reshape(lead)
 
 
-def first(designs: Designs, *given: Array) -> First:
+def first(designs: Designs, *given: Array) -> DesignGradients:
     """Distances and gradients; where they are not defined, as the designs say."""
     lead = designs.lead([x.shape for x in given])
     count, shapes = prod(lead), designs.shapes
@@ -153,7 +153,7 @@ def first(designs: Designs, *given: Array) -> First:
             if (0 if alone else k) in found.lacking:
                 lacking[row] = found.lacking[0 if alone else k]
     ambient.tell(designs.undefined, lacking, count, 3)
-    return First(
+    return DesignGradients(
         distance.reshape(lead),
         tuple(x.reshape((*lead, *shape)) for x, shape in zip(gradients, shapes, strict=True)),
     )
@@ -180,7 +180,7 @@ def _names(design: Body | Design, given: Any, label: str) -> tuple[str, ...]:
     return tuple(sorted(given))
 
 
-def _rates(designs: Designs, one: Set, found: ambient.Rows) -> list[Array]:
+def _rates(designs: Designs, one: Set, found: ambient.AmbientRows) -> list[Array]:
     """(m, ...) derivatives by each parameter that is given; nan in rows that lack derivatives.
 
     In flat contact a parameter need not move all pairs of nearest points alike, and so its
@@ -208,7 +208,7 @@ def _by_side(designs: Designs) -> tuple[list[Shape], list[Shape]]:
 
 def _answered(
     designs: Designs, given: Sequence[Array], lead: Shape, order: int
-) -> Iterator[tuple[Set, ambient.Rows]]:
+) -> Iterator[tuple[Set, ambient.AmbientRows]]:
     """Each set of parameters with the answers of its rows."""
     sets = _sets(designs, given, lead)
     for one in sets:
@@ -270,7 +270,7 @@ def _set(
         bodies.append(_convex(body, f"design_{side}"))
         # a design none of whose parameters are given does not change
         made.append(changed if names else bodies[-1])
-    pair = ambient.Pair(bodies[0], bodies[1], designs.undefined)
+    pair = ambient.AmbientPair(bodies[0], bodies[1], designs.undefined)
     return Set(rows, (made[0], made[1]), pair, poses)
 
 

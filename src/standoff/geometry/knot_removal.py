@@ -26,7 +26,7 @@ REFINEMENTS = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class PointSpread:
     """Where homogeneous control points lie: a centre (3,), and the greatest distances of the points
     from it and from the origin, length."""
 
@@ -35,12 +35,12 @@ class Place:
     reach: float
 
     @staticmethod
-    def of(h: Array) -> Place:
+    def of(h: Array) -> PointSpread:
         """Of points (..., 4), components (w x, w y, w z, w)."""
         points = (h[..., :3] / h[..., 3:]).reshape(-1, 3)
         low, high = points.min(axis=0), points.max(axis=0)
         reach = float(np.linalg.norm(np.maximum(np.abs(low), np.abs(high))))
-        return Place(0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)), reach)
+        return PointSpread(0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)), reach)
 
     @property
     def limit(self) -> float:
@@ -71,7 +71,7 @@ def essential_net(
     (u, v, points, moved) : knot vectors, points (n', m', 4), and a bound on how far the surface has
         moved, length.
     """
-    place = Place.of(h)
+    place = PointSpread.of(h)
     u_less, net = _along_first(u, h, place)
     v_less, net = _along_first(v, net.swapaxes(0, 1), place)
     net = net.swapaxes(0, 1)
@@ -86,7 +86,7 @@ def essential_net(
 
 def essential_row(vector: KnotVector, h: Array) -> tuple[KnotVector, Array, float]:
     """As `essential_net`, for a curve's homogeneous control points (n, 4)."""
-    place = Place.of(h)
+    place = PointSpread.of(h)
     less, row = _along_first(vector, h[:, None], place)
     if less is vector:
         return vector, h, 0.0
@@ -100,13 +100,13 @@ def _moved_net(
     v_less: KnotVector,
     h: Array,
     net: Array,
-    place: Place,
+    place: PointSpread,
 ) -> float:
     rows, columns = _inserted_again(u, u_less), _inserted_again(v, v_less)
     return place.moved(h, np.einsum("ia,abc,jb->ijc", rows, net, columns))
 
 
-def _along_first(vector: KnotVector, h: Array, place: Place) -> tuple[KnotVector, Array]:
+def _along_first(vector: KnotVector, h: Array, place: PointSpread) -> tuple[KnotVector, Array]:
     """(n, m, 4) points without the redundant knots along their first axis."""
     left_out: list[float] = []
     found = vector, h
@@ -123,7 +123,7 @@ def _along_first(vector: KnotVector, h: Array, place: Place) -> tuple[KnotVector
     return found
 
 
-def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
+def _candidates(vector: KnotVector, h: Array, place: PointSpread) -> list[float]:
     """Inner knots that can each be removed alone, each as often as possible."""
     p, t = vector.degree, vector.knots
     found: list[float] = []
@@ -142,7 +142,7 @@ def _candidates(vector: KnotVector, h: Array, place: Place) -> list[float]:
 
 
 def _without(
-    vector: KnotVector, left_out: Sequence[float], h: Array, place: Place
+    vector: KnotVector, left_out: Sequence[float], h: Array, place: PointSpread
 ) -> tuple[KnotVector, Array, float]:
     """The spline without some of its knots whose control points fit best, and `Place.moved`."""
     knots = vector.knots.tolist()

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Span:
+class NurbsSpan:
     """A Bezier patch of a NURBS: its part of the domain and its homogeneous points.
 
     Attributes
@@ -185,7 +185,7 @@ class NurbsSurface(Surface):
         surface._set(points, self.weights, self.vector_u, self.vector_v, self.domain)
         return surface
 
-    def spans(self, spare: bool = False) -> list[Span]:
+    def spans(self, spare: bool = False) -> list[NurbsSpan]:
         """The Bezier patches of the domain, u major, cut to it at its rim.
 
         spare : also cut them at redundant knots.
@@ -195,7 +195,7 @@ class NurbsSurface(Surface):
         parts_u = _cuts(self.essential_u, np.array([u0, *us, u1]))
         parts_v = _cuts(self.essential_v, np.array([v0, *vs, v1]))
         return [
-            Span(
+            NurbsSpan(
                 (low_u, high_u, low_v, high_v),
                 cut_u @ np.moveaxis(self.blocks[i, j], 2, 0) @ cut_v.T,
             )

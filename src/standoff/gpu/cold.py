@@ -65,7 +65,7 @@ def distances(a: Body, b: Body, poses_a: PosesLike, poses_b: PosesLike) -> Dista
         As ``so.distances``.
     """
     check_pair(a, b)
-    answering = Answering(kernel_of(a, b))
+    answering = ColdKernel(kernel_of(a, b))
     check_there()
     found = answered_rows(a, b, poses_a, poses_b, cold=answering)
     if found.errors:
@@ -92,7 +92,7 @@ def kernel_of(a: Body, b: Body) -> str:
     return f"cold_{kind}"
 
 
-class Answering:
+class ColdKernel:
     """What answers cold rows by a kernel, as `many_distances.cold_rows` does.
 
     Attributes

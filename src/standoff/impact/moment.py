@@ -22,7 +22,7 @@ from standoff.typing import Array
 EPS = float(np.finfo(np.float64).eps)
 
 
-class Placed:
+class BodyAtInstant:
     """A body at an instant: pose (R, p), the world position and velocity of its box's centre."""
 
     __slots__ = ("centre", "p", "pose", "rotation", "twist", "velocity")
@@ -37,7 +37,7 @@ class Placed:
         self.velocity = twist[:3] + cross(twist[3:], arm)
 
 
-class Box:
+class BodyBox:
     """The box around a body's core, or a solid, in body axes.
 
     Attributes
@@ -77,12 +77,12 @@ class Box:
         self.reach = length(self.half)
 
 
-class Ball:
+class BallBound:
     """The distance of two bounding balls: a bound that needs no query."""
 
     __slots__ = ("lower", "normal", "rate")
 
-    def __init__(self, boxes: tuple[Box, Box], a: Placed, b: Placed) -> None:
+    def __init__(self, boxes: tuple[BodyBox, BodyBox], a: BodyAtInstant, b: BodyAtInstant) -> None:
         between = b.centre - a.centre
         if boxes[0].plane:
             self.normal = a.rotation @ boxes[0].normal
@@ -95,21 +95,21 @@ class Ball:
         self.rate = float(self.normal @ (b.velocity - a.velocity))
 
 
-class Moment:
+class PairInstant:
     """The pair at one instant; the tracker is asked by `ask`, from the state of an earlier one."""
 
-    def __init__(self, boxes: tuple[Box, Box], paths: tuple[Any, Any], time: float) -> None:
+    def __init__(self, boxes: tuple[BodyBox, BodyBox], paths: tuple[Any, Any], time: float) -> None:
         self.time = time
-        self.a = Placed(boxes[0].middle, paths[0], time)
-        self.b = Placed(boxes[1].middle, paths[1], time)
-        self.ball = Ball(boxes, self.a, self.b)
+        self.a = BodyAtInstant(boxes[0].middle, paths[0], time)
+        self.b = BodyAtInstant(boxes[1].middle, paths[1], time)
+        self.ball = BallBound(boxes, self.a, self.b)
         self.points = self._points(boxes)
         self._round(boxes, paths)
         self.state: TrackerState | None = None
         self.lower, self.upper = -math.inf, math.inf
         self.rate = math.nan
 
-    def _round(self, boxes: tuple[Box, Box], paths: tuple[Any, Any]) -> None:
+    def _round(self, boxes: tuple[BodyBox, BodyBox], paths: tuple[Any, Any]) -> None:
         """Find what rounding of the poses and of time may do to a separation (length)."""
         bounds = [
             bounds_of(path, self.time, self.time, point)
@@ -127,7 +127,7 @@ class Moment:
         # where no length went in the poses are the given ones
         self.doubt = self.rounding if composed > 0.0 else 0.0
 
-    def _points(self, boxes: tuple[Box, Box]) -> list[Array]:
+    def _points(self, boxes: tuple[BodyBox, BodyBox]) -> list[Array]:
         """The point of each body whose motion counts, in its coordinates: the box's centre.
 
         Of a half-space it is the point of its frame that is beside the other body.
@@ -154,7 +154,7 @@ class Moment:
         """The direction along which the bodies are ``lower`` apart, after `ask`."""
         return self.proximity.normal
 
-    def ask(self, tracker: Tracker, before: Moment | None) -> None:
+    def ask(self, tracker: Tracker, before: PairInstant | None) -> None:
         """Ask the tracker: from the earlier moment, or anywhere without one."""
         poses = self.a.pose, self.b.pose
         twists = self.a.twist, self.b.twist

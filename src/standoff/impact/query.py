@@ -8,8 +8,8 @@ from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
 from standoff.checks.numbers import positive, whole_number
 from standoff.impact.answer import Impact
-from standoff.impact.moment import Box
-from standoff.impact.search import Search, checked_clearance, checked_times
+from standoff.impact.moment import BodyBox
+from standoff.impact.search import ImpactSearch, checked_clearance, checked_times
 from standoff.impact.tolerances import TRACKER_SHARE, TRACKER_TOLERANCE
 from standoff.motion.bounds import known
 from standoff.motion.moving import MotionLike, moving
@@ -80,7 +80,7 @@ def time_of_impact(  # noqa: PLR0913 - four of them are keywords with defaults
         )
     tracker = Tracker(a, b, law=PredictorCorrector(tolerance=gap))
     size = sum(body.size for body in (tracker.a, tracker.b) if body.bounded)
-    return Search(tracker, (Box(a), Box(b)), size, paths, asked).run(begin, end)
+    return ImpactSearch(tracker, (BodyBox(a), BodyBox(b)), size, paths, asked).run(begin, end)
 
 
 def is_solid(body: Any) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from standoff.checks.numbers import number, positive
 from standoff.errors import StandoffError
 from standoff.impact.answer import Impact, ImpactStatus
-from standoff.impact.moment import EPS, Box, Moment
+from standoff.impact.moment import EPS, BodyBox, PairInstant
 from standoff.impact.tolerances import (
     AIM,
     LEAST_TOLERANCE,
@@ -80,7 +80,7 @@ class _Spent(Exception):
     """The budget of evaluations ran out."""
 
 
-class Search:
+class ImpactSearch:
     """The search of one pair, by what a tracker proves at instants.
 
     Parameters
@@ -98,7 +98,7 @@ class Search:
     def __init__(
         self,
         tracker: Any,
-        boxes: tuple[Box, Box],
+        boxes: tuple[BodyBox, BodyBox],
         size: float,
         paths: tuple[Any, Any],
         asked: tuple[float, float, int],
@@ -117,7 +117,9 @@ class Search:
         stops = sorted({*(t for path in self.paths for t in breaks_of(path, start, end)), end})
         self.now = self.look(start)
         self.chords.prepare(self.now, stops[0])
-        self.known: Moment | None = None  # the last proven instant at which the tracker was asked
+        self.known: PairInstant | None = (
+            None  # the last proven instant at which the tracker was asked
+        )
         self.tolerance = self.relative * (self.size or abs(self.now.ball.lower))
         try:
             for stop in stops:
@@ -130,16 +132,16 @@ class Search:
 
     # --- the pair at an instant -------------------------------------------------------------
 
-    def look(self, time: float) -> Moment:
+    def look(self, time: float) -> PairInstant:
         if self.evaluations >= self.budget:
             raise _Spent
         self.evaluations += 1
         return self._seen(time)
 
-    def _seen(self, time: float) -> Moment:
-        return Moment(self.boxes, self.paths, time)
+    def _seen(self, time: float) -> PairInstant:
+        return PairInstant(self.boxes, self.paths, time)
 
-    def ask(self, moment: Moment) -> None:
+    def ask(self, moment: PairInstant) -> None:
         """Ask the tracker, from the last proven instant at which it was asked."""
         if moment.asked:
             return
@@ -148,11 +150,11 @@ class Search:
         if self.touches(moment):
             self.latest = min(self.latest, moment.time)
 
-    def touches(self, moment: Moment) -> bool:
+    def touches(self, moment: PairInstant) -> bool:
         """Is it proven to be in contact, also at the poses that rounding has moved?"""
         return moment.upper + moment.doubt <= self.clearance
 
-    def gap(self, moment: Moment, balls: bool = False) -> float:
+    def gap(self, moment: PairInstant, balls: bool = False) -> float:
         """Certified distance beyond the clearance, less what rounding may do."""
         lower = moment.ball.lower if balls else moment.lower
         return lower - self.clearance - moment.rounding
@@ -163,7 +165,7 @@ class Search:
         """Prove time from the present instant up to `stop`; what was found on the way, or None."""
         self.chords.prepare(self.now, stop)
         self.paces = self._paces()
-        ahead: list[Moment] = []
+        ahead: list[PairInstant] = []
         before = math.inf  # the next instant to look at is before this one
         while self.now.time < stop:
             tolerance = max(self.tolerance, LEAST_TOLERANCE * self.now.rounding)
@@ -209,11 +211,11 @@ class Search:
         gap = self.gap(self.now, balls=True)
         return float(self.paces[True].ahead(gap, self.now.ball.rate, 0.5 * gap, longest))
 
-    def _move_to(self, moment: Moment) -> None:
+    def _move_to(self, moment: PairInstant) -> None:
         self.now = moment
         self.steps += 1
 
-    def _free(self, first: Moment, last: Moment) -> bool:
+    def _free(self, first: PairInstant, last: PairInstant) -> bool:
         """Is all the time between two instants proven to keep the clearance?"""
         self.chords.prepare(first, last.time)
         for balls in (True, False):
@@ -227,13 +229,13 @@ class Search:
                 return True
         return False
 
-    def _kept(self, first: Moment, last: Moment, balls: bool) -> bool:
+    def _kept(self, first: PairInstant, last: PairInstant, balls: bool) -> bool:
         """The same by the bodies, or their balls, at two instants at which they keep it."""
         sag = self.chords.sag(first, last, balls)
         self.paces[balls].saw_sag(sag, last.time - first.time)
         return sag < (math.sqrt(self.gap(first, balls)) + math.sqrt(self.gap(last, balls))) ** 2
 
-    def _useful(self, moment: Moment) -> bool:
+    def _useful(self, moment: PairInstant) -> bool:
         """Will it serve once more: it is clear of the clearance, or known to be in contact?"""
         return self.gap(moment) > 0.0 or self.touches(moment)
 
@@ -285,12 +287,12 @@ class Search:
                 break
         return near
 
-    def _near(self, moment: Moment, tolerance: float) -> bool:
+    def _near(self, moment: PairInstant, tolerance: float) -> bool:
         """Is the distance proven to be within the tolerance of the clearance, but for what the
         lower bound is less by where all is well?"""
         return moment.upper - self.clearance <= 2.0 * (tolerance + self._slack(moment))
 
-    def _slack(self, moment: Moment) -> float:
+    def _slack(self, moment: PairInstant) -> float:
         """Of both bodies, length."""
         return float(sum(body.report.slack for body in (self.tracker.a, self.tracker.b)))
 
@@ -341,11 +343,11 @@ STALE = 4.0
 class Chords:
     """Bounds the sag of one pair on two paths, within a piece of time without a break."""
 
-    def __init__(self, boxes: tuple[Box, Box], paths: tuple[Any, Any]) -> None:
+    def __init__(self, boxes: tuple[BodyBox, BodyBox], paths: tuple[Any, Any]) -> None:
         self.boxes, self.paths = boxes, paths
         self.first, self.last = 0.0, -1.0
 
-    def prepare(self, start: Moment, last: float) -> None:
+    def prepare(self, start: PairInstant, last: float) -> None:
         """Make the bounds those of the time from a moment to `last`, or of little more."""
         within = self.first <= start.time and last <= self.last
         if within and self.last - self.first <= STALE * (last - start.time):
@@ -360,7 +362,7 @@ class Chords:
             for bound, box in zip(self.bounds, self.boxes, strict=True)
         )
 
-    def sag(self, start: Moment, end: Moment, balls: bool) -> float:
+    def sag(self, start: PairInstant, end: PairInstant, balls: bool) -> float:
         """S between two moments in `prepare`'s time: of the bodies, or of their bounding balls."""
         span = end.time - start.time
         bend = 0.5 * span * span
@@ -384,7 +386,7 @@ class Chords:
                 total += float(np.abs(turn @ (after - before)) @ box.half)
         return total
 
-    def first_sag(self, start: Moment, balls: bool) -> float:
+    def first_sag(self, start: PairInstant, balls: bool) -> float:
         """A guess of S over the square of the span [length/s²], before any was seen."""
         spread = abs(start.ball.lower) + sum(box.reach for box in self.boxes)
         total = sum(bound.acceleration for bound in self.bounds)

@@ -12,8 +12,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from standoff.impact.moment import Box, Moment
-from standoff.impact.search import Search
+from standoff.impact.moment import BodyBox, PairInstant
+from standoff.impact.search import ImpactSearch
 from standoff.motion.vectors import cross
 from standoff.solids import PlanarSolid, SolidProximity, distance
 from standoff.solids.spatial.models import as_model
@@ -27,7 +27,7 @@ ONE_STEP = 0.9
 """Part of the interval that the distance at its beginning proves alone."""
 
 
-class Asked(NamedTuple):
+class InstantAnswer(NamedTuple):
     """What `Cold` was told at an instant."""
 
     proximity: SolidProximity
@@ -39,21 +39,23 @@ class Cold:
     def __init__(self, a: Any, b: Any, tolerance: float | None) -> None:
         self.a, self.b, self.tolerance = a, b, tolerance
 
-    def start(self, pose_a: Any, pose_b: Any) -> Asked:
+    def start(self, pose_a: Any, pose_b: Any) -> InstantAnswer:
         """The answer at poses."""
-        return Asked(distance(self.a, self.b, pose_a, pose_b, tolerance=self.tolerance))
+        return InstantAnswer(distance(self.a, self.b, pose_a, pose_b, tolerance=self.tolerance))
 
-    def step(self, before: Asked, pose_a: Any, pose_b: Any) -> tuple[Asked, SolidProximity]:
+    def step(
+        self, before: InstantAnswer, pose_a: Any, pose_b: Any
+    ) -> tuple[InstantAnswer, SolidProximity]:
         """The same; `before` is of no use."""
         del before
         now = self.start(pose_a, pose_b)
         return now, now.proximity
 
 
-class SolidMoment(Moment):
+class SolidMoment(PairInstant):
     """Two solids at an instant."""
 
-    def ask(self, tracker: Any, before: Moment | None) -> None:
+    def ask(self, tracker: Any, before: PairInstant | None) -> None:
         """Ask the tracker, from the earlier moment where there is one."""
         poses = self.a.pose, self.b.pose
         if before is None or before.state is None:
@@ -95,23 +97,23 @@ class Lipschitz:
         return min(longest, max(span, 0.0))
 
 
-class SolidSearch(Search):
+class SolidSearch(ImpactSearch):
     """The search of two solids."""
 
     # faces that meet flat are proven to overlap only once they are deep in each other
     farther = 8.0
 
-    def _seen(self, time: float) -> Moment:
+    def _seen(self, time: float) -> PairInstant:
         return SolidMoment(self.boxes, self.paths, time)
 
     def _paces(self) -> dict[bool, Any]:
         return {balls: Lipschitz(self.chords.speed) for balls in (True, False)}
 
-    def _kept(self, first: Moment, last: Moment, balls: bool) -> bool:
+    def _kept(self, first: PairInstant, last: PairInstant, balls: bool) -> bool:
         way = self.chords.speed * (last.time - first.time)
         return way < self.gap(first, balls) + self.gap(last, balls)
 
-    def _slack(self, moment: Moment) -> float:
+    def _slack(self, moment: PairInstant) -> float:
         answer: Any = moment.proximity
         return float(answer.slack)
 
@@ -139,4 +141,6 @@ def solid_search(
     tracker: Any = Cold(a, b, gap * size)
     if not planar and is_tracked(*models):
         tracker = SolidTracker(a, b, tolerance=gap * size)
-    return SolidSearch(tracker, (Box(a), Box(b)), size, paths, (clearance, tolerance, budget))
+    return SolidSearch(
+        tracker, (BodyBox(a), BodyBox(b)), size, paths, (clearance, tolerance, budget)
+    )

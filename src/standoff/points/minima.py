@@ -12,7 +12,7 @@ import numpy as np
 from standoff.bodies.features import Feature
 from standoff.kernels.tolerances import SLOPE
 from standoff.points.answer import Minimum, PointEvent
-from standoff.points.state import Found, Leg, PointState
+from standoff.points.state import AnswerDraft, Leg, PointState
 from standoff.points.tolerances import EQUAL_DEPTHS, RELEASE_SLOPES
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.branches import Branch
@@ -44,11 +44,11 @@ class PointMinima(KeepsReadOnly, ABC, Generic[S]):
         """A point or a velocity as it is given, (3,)."""
 
     @abstractmethod
-    def begun(self, x: Array, v: Array | None) -> Found:
+    def begun(self, x: Array, v: Array | None) -> AnswerDraft:
         """The first answer."""
 
     @abstractmethod
-    def stepped(self, state: PointState, x: Array, v: Array | None, h: float) -> Found:
+    def stepped(self, state: PointState, x: Array, v: Array | None, h: float) -> AnswerDraft:
         """The answer after a step of `h` [s]."""
 
     @abstractmethod

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from standoff.best_first import Part, best_first
+from standoff.best_first import SearchPart, best_first
 from standoff.bodies.body import Body
 from standoff.kernels.entries.queries import planar_edge_normal
 from standoff.points.tolerances import ON_BOUNDARY, SHORTEST_CHORD
@@ -37,7 +37,7 @@ MOST_CHORDS = 4_000
 only where it all is at one distance, as a circle's is from its centre."""
 
 
-class Bounds(NamedTuple):
+class DepthBounds(NamedTuple):
     """What is proven of a point's depth in the body.
 
     Attributes
@@ -181,7 +181,7 @@ class PlanarBoundary(KeepsReadOnly):
             # Behind the tangent at the middle a point is beyond one of the two chords at most.
             ends = list(over[0])
 
-    def bounds(self, x: Array, known: Place, goal: float) -> Bounds:
+    def bounds(self, x: Array, known: Place, goal: float) -> DepthBounds:
         """Bound the depth of a point inside, (2,), from below.
 
         Parameters
@@ -204,10 +204,10 @@ class PlanarBoundary(KeepsReadOnly):
         others = float(np.delete(bounds, low).min()) if len(low) < len(bounds) else math.inf
         shortest = SHORTEST_CHORD * self.body.size
 
-        def part(chord: Chord, bound: float, seen: float = math.inf) -> Part[Chord]:
-            return Part(bound, chord, seen, math.dist(chord[2], chord[4]) <= shortest)
+        def part(chord: Chord, bound: float, seen: float = math.inf) -> SearchPart[Chord]:
+            return SearchPart(bound, chord, seen, math.dist(chord[2], chord[4]) <= shortest)
 
-        def halves(chosen: list[Part[Chord]]) -> list[Part[Chord]]:
+        def halves(chosen: list[SearchPart[Chord]]) -> list[SearchPart[Chord]]:
             edge, t0, a, t1, b = chosen[0].body
             t = 0.5 * (t0 + t1)
             m = self.point(edge, t)
@@ -226,7 +226,7 @@ class PlanarBoundary(KeepsReadOnly):
         if searched.found < distance and searched.place is not None:
             distance, nearest = searched.found, (searched.place[0], searched.place[3])
         depth = min(searched.least, others, distance) - self.body.report.slack
-        return Bounds(depth, nearest, distance, searched.splits)
+        return DepthBounds(depth, nearest, distance, searched.splits)
 
     def _chord_bounds(self, x: Array) -> Array:
         """`_bound` of all the chords at first, (n,)."""

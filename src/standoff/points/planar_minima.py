@@ -24,7 +24,7 @@ from standoff.errors import StandoffError
 from standoff.points.answer import Minimum
 from standoff.points.minima import HOME, PointMinima, pose_of, twists
 from standoff.points.planar_boundary import INTERVALS, PlanarBoundary, without_radius
-from standoff.points.state import Found, Leg, PointState
+from standoff.points.state import AnswerDraft, Leg, PointState
 from standoff.points.tolerances import (
     ENTRY_INSTANT,
     PARAMETER_AT_REST,
@@ -32,7 +32,7 @@ from standoff.points.tolerances import (
     SETTLED_RESIDUAL,
     TIE,
 )
-from standoff.tracking.branches import Birth, Branch, Branches, Carried, End
+from standoff.tracking.branches import Birth, Branch, Branches, BranchPlace, End
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.state import TrackerState
@@ -220,7 +220,7 @@ class PlanarMinima(PointMinima[OnCurve]):
             )
         return np.append(given[:2], 0.0)
 
-    def begun(self, x: Array, v: Array | None) -> Found:
+    def begun(self, x: Array, v: Array | None) -> AnswerDraft:
         """All minima, and the least of them."""
         brackets = self.boundary.brackets(x[:2])
         places = []
@@ -236,7 +236,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         v: Array | None,
         parameters: Sequence[float] | Mapping[int, float],
         feature: Feature | tuple[str, int] | None,
-    ) -> Found:
+    ) -> AnswerDraft:
         """Begin at one parameter of each curve, and outside at a feature."""
         table = parameters if isinstance(parameters, Mapping) else dict(enumerate(parameters))
         curves = self.boundary.curves
@@ -265,13 +265,13 @@ class PlanarMinima(PointMinima[OnCurve]):
         x: Array,
         v: Array | None,
         feature: Feature | tuple[str, int] | None,
-    ) -> Found:
+    ) -> AnswerDraft:
         branches = self._joined(Minima(), places, Birth.START, x, v)
         if self.boundary.inside(x[:2]) is not False:
             return self._inside(branches, x, v)
         return self._outside(branches, None, feature, x, v, self.outer.dt)
 
-    def stepped(self, state: PointState, x: Array, v: Array | None, h: float) -> Found:
+    def stepped(self, state: PointState, x: Array, v: Array | None, h: float) -> AnswerDraft:
         """Follow all minima, add those that samples show, and answer with the least."""
         side = self.boundary.inside(x[:2])
         inside = state.inside if side is None else side
@@ -281,7 +281,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         return self._outside(branches, state.pair, None, x, v, h)
 
     def _carried(self, branches: Minima, x: Array, v: Array | None, h: float) -> Minima:
-        def follow(branch: Branch[OnCurve]) -> Carried[OnCurve]:
+        def follow(branch: Branch[OnCurve]) -> BranchPlace[OnCurve]:
             state = branch.state
             if self.inner is None or state.law is None:
                 new = self.at(state, x)
@@ -291,7 +291,7 @@ class PlanarMinima(PointMinima[OnCurve]):
                 t = within(self.boundary, state.edge, answer.parameters_a[0])
                 new = standing(self.boundary, state.edge, t, x[:2], law)
             moved = apart(self.boundary, state.edge, state.t, new.t)
-            return Carried(new.distance, new, moved)
+            return BranchPlace(new.distance, new, moved)
 
         return branches.carried(follow, self.same)
 
@@ -353,7 +353,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         least = math.inf if self.inner is None else SETTLED_RESIDUAL * self.size
         return all(b.state.residual <= least for b in branches if b.state.edge == edge)
 
-    def _inside(self, branches: Minima, x: Array, v: Array | None) -> Found:
+    def _inside(self, branches: Minima, x: Array, v: Array | None) -> AnswerDraft:
         """The least minimum, proven; nearer points that the proof meets are followed."""
         restarts = samples = 0
         while True:
@@ -387,11 +387,11 @@ class PlanarMinima(PointMinima[OnCurve]):
         side: float,
         bounds: tuple[float, float],
         status: Status,
-    ) -> Found:
+    ) -> AnswerDraft:
         """The answer at the least minimum; `side` is −1 inside and 1 outside."""
         best = branches.least.state
         normal = self.height(best, x)[1]
-        return Found(
+        return AnswerDraft(
             inside=side < 0.0,
             distance=side * best.distance - self.radius,
             bounds=(bounds[0] - self.radius, bounds[1] - self.radius),
@@ -413,7 +413,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         x: Array,
         v: Array | None,
         h: float,
-    ) -> Found:
+    ) -> AnswerDraft:
         """The automaton's answer; it is entered at the least minimum, or at a given feature."""
         branches = branches.settled(TIE * self.size)
         best, pose = branches.least.state, pose_of(x)
@@ -441,7 +441,7 @@ class PlanarMinima(PointMinima[OnCurve]):
         normal = away / d if at_vertex else self.height(shown, x)[1]
         lower = max(answer.lower_bound, 0.0)
         doubt = self.doubt if answer.status is not Status.NOT_RESTARTED else answer.status
-        return Found(
+        return AnswerDraft(
             inside=False,
             distance=answer.distance - self.radius,
             bounds=(lower - self.radius, answer.distance - self.radius),

@@ -22,7 +22,7 @@ from standoff.motion.moving import Moving
 from standoff.motion.pose_function import path_of
 from standoff.points.answer import Minimum, PointEvent, PointProximity
 from standoff.points.state import PointState
-from standoff.points.switches import Way
+from standoff.points.switches import PointWay
 from standoff.points.tracker import PointTracker
 from standoff.read_only import KeepsReadOnly
 from standoff.tracking.inputs import flat_pose, flat_twist
@@ -161,7 +161,7 @@ def record_point(
     state = tracker.start(x, v) if start is None else start
     states = [state]
     for before, time in pairwise(clock.tolist()):
-        way = Way(before, time, partial(_placed, moving))
+        way = PointWay(before, time, partial(_placed, moving))
         state = tracker.step_along(state, *way.place(time), way, locate)
         states.append(state)
     return _recording(tracker, clock, states)

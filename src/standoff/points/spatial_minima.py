@@ -19,9 +19,9 @@ from standoff.checks.arrays import finite
 from standoff.errors import StandoffError
 from standoff.points.answer import Minimum
 from standoff.points.minima import HOME, PointMinima, pose_of, twists
-from standoff.points.state import Found, Leg, PointState
+from standoff.points.state import AnswerDraft, Leg, PointState
 from standoff.points.tolerances import DEPTH_ROUNDOFF, RAY_WITHIN, SAME_NORMAL, TIE
-from standoff.tracking.branches import Birth, Branch, Branches, Carried, End
+from standoff.tracking.branches import Birth, Branch, Branches, BranchPlace, End
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import PredictorCorrector
 from standoff.tracking.state import TrackerState
@@ -75,12 +75,12 @@ class SpatialMinima(PointMinima[TrackerState]):
         """A point or a velocity, (3,), writable: the kernels are compiled for such arrays."""
         return finite(value, name, (3,)).copy()
 
-    def begun(self, x: Array, v: Array | None) -> Found:
+    def begun(self, x: Array, v: Array | None) -> AnswerDraft:
         """The least minimum, with its proof, and others."""
         proof = self.outer.start(HOME, pose_of(x), *twists(v))
         return self._answered(self._entered(Minima(), Birth.START, proof, x), proof)
 
-    def stepped(self, state: PointState, x: Array, v: Array | None, h: float) -> Found:
+    def stepped(self, state: PointState, x: Array, v: Array | None, h: float) -> AnswerDraft:
         """Outside the pair's frame; inside all minima followed, and the least proven."""
         pose, proven = pose_of(x), self.law.depth == "global"
         if state.pair is None:
@@ -117,12 +117,12 @@ class SpatialMinima(PointMinima[TrackerState]):
         """
         reach = float(np.linalg.norm(x - start)) + DEPTH_ROUNDOFF * self.size
 
-        def follow(branch: Branch[TrackerState]) -> Carried[TrackerState]:
+        def follow(branch: Branch[TrackerState]) -> BranchPlace[TrackerState]:
             state = self.at(branch.state, x)
             depth, normal = self.depth(state, x)
             turn = float(np.linalg.norm(normal - self.depth(branch.state, start)[1]))
             end = End.JUMPED if abs(depth - branch.value) > reach else None
-            return Carried(depth, state, turn, End.LEFT if depth <= 0.0 else end)
+            return BranchPlace(depth, state, turn, End.LEFT if depth <= 0.0 else end)
 
         return branches.carried(follow, self.same)
 
@@ -130,13 +130,13 @@ class SpatialMinima(PointMinima[TrackerState]):
         inner = [(-s.proximity.distance, s) for s in states if s.proximity.distance < 0.0]
         return branches.joined(inner, reason, self.same)
 
-    def _answered(self, branches: Minima, proof: TrackerState) -> Found:
+    def _answered(self, branches: Minima, proof: TrackerState) -> AnswerDraft:
         """The least minimum inside, the pair's answer outside."""
         branches = branches.settled(TIE * self.size)
         inside = len(branches) > 0
         whole = proof.proximity
         p = branches.least.state.proximity if inside else whole
-        return Found(
+        return AnswerDraft(
             inside=inside,
             distance=p.distance,
             bounds=(p.lower_bound, max(p.distance, whole.upper_bound)),

@@ -66,7 +66,7 @@ class Leg(NamedTuple):
     slope: float = math.nan
 
 
-class Found(NamedTuple):
+class AnswerDraft(NamedTuple):
     """An answer in the making.
 
     Attributes

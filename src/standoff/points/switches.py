@@ -35,7 +35,7 @@ MOST_ANSWERS = 1000
 """Answers within one step: a switch by halving takes some 35."""
 
 
-class Way(NamedTuple):
+class PointWay(NamedTuple):
     """The point's way through a step.
 
     Attributes
@@ -51,7 +51,7 @@ class Way(NamedTuple):
     place: Callable[[float], tuple[Array, Array | None]]
 
 
-def way_between(before: PointState, x: Array, v: Array | None, h: float) -> Way:
+def way_between(before: PointState, x: Array, v: Array | None, h: float) -> PointWay:
     """The way of `h` [s] from a state to a place, (3,): cubic where both velocities are known, else
     straight."""
     start, chord = before.point, x - before.point
@@ -65,7 +65,7 @@ def way_between(before: PointState, x: Array, v: Array | None, h: float) -> Way:
         rate = chord + (1.0 - 2.0 * tau) * bow - tau * (1.0 - tau) * (first + last)
         return start + tau * chord + tau * (1.0 - tau) * bow, rate / h
 
-    return Way(before.time, before.time + h, place)
+    return PointWay(before.time, before.time + h, place)
 
 
 class TooMany(ArithmeticError):
@@ -79,7 +79,7 @@ class At(NamedTuple):
     state: PointState
 
 
-class Step:
+class PointStep:
     """One step, to be looked into.
 
     Parameters
@@ -87,7 +87,7 @@ class Step:
     minima : PointMinima
     before : PointState
         At the step's start.
-    way : Way
+    way : PointWay
     stepped : function
         From a place, (3,), a velocity and the time since the step's start [s] to the state there.
     """
@@ -96,7 +96,7 @@ class Step:
         self,
         minima: PointMinima[object],
         before: PointState,
-        way: Way,
+        way: PointWay,
         stepped: Callable[[Array, Array | None, float], PointState],
     ) -> None:
         self.minima, self.before, self.way, self.stepped = minima, before, way, stepped

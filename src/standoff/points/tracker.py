@@ -16,8 +16,8 @@ from standoff.points.answer import PointProximity
 from standoff.points.minima import PointMinima
 from standoff.points.planar_minima import PlanarMinima
 from standoff.points.spatial_minima import SpatialMinima
-from standoff.points.state import Found, PointState
-from standoff.points.switches import Step, Way, way_between
+from standoff.points.state import AnswerDraft, PointState
+from standoff.points.switches import PointStep, PointWay, way_between
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.tracking.law_options import Law
@@ -166,7 +166,7 @@ class PointTracker(KeepsReadOnly):
         return following, following.proximity
 
     def step_along(
-        self, state: PointState, x: Array, v: Array | None, way: Way, locate: bool
+        self, state: PointState, x: Array, v: Array | None, way: PointWay, locate: bool
     ) -> PointState:
         """The state at the end of a way, at a place and velocity, (3,); its clock times the
         switches.
@@ -181,7 +181,7 @@ class PointTracker(KeepsReadOnly):
         after = self._state(found, x, v, state.time + h)
         changed = self.minima.changed(state, after, state.branches.next_key)
         if changed and locate:
-            events = Step(self.minima, state, way, stepped).switches(after)
+            events = PointStep(self.minima, state, way, stepped).switches(after)
             if events is not None:
                 return after.with_events(events)
         seen = self.minima.switches if changed else self.minima.outer_switches
@@ -191,5 +191,5 @@ class PointTracker(KeepsReadOnly):
         x = self.minima.read(point, "point")
         return x, None if velocity is None else self.minima.read(velocity, "velocity")
 
-    def _state(self, found: Found, x: Array, v: Array | None, time: float) -> PointState:
+    def _state(self, found: AnswerDraft, x: Array, v: Array | None, time: float) -> PointState:
         return found.state(map(self.minima.shown, found.branches), x, v, time)

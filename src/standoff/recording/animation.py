@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.drawing.pair_picture import (
-    Shown,
+    DrawnAnswer,
     add_legend,
     axes_of,
     cloud_of,
@@ -78,10 +78,10 @@ def drawing(
     return figure, draw, len(frames)
 
 
-def _shown(recording: RecordedFrames, paths: Paths, frame: int) -> Shown:
+def _shown(recording: RecordedFrames, paths: Paths, frame: int) -> DrawnAnswer:
     time = float(recording.time[frame])
     pose_a, pose_b = (flat_pose(path.pose(time)) for path in paths)
-    return Shown(
+    return DrawnAnswer(
         (pose_a, pose_b),
         (recording.point_a[frame], recording.point_b[frame]),
         recording.normal[frame],

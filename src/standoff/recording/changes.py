@@ -6,14 +6,14 @@ from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
 
-class Known(Protocol):
+class AnswerAtTime(Protocol):
     """An answer at a time."""
 
     @property
     def time(self) -> float: ...
 
 
-K = TypeVar("K", bound=Known)
+K = TypeVar("K", bound=AnswerAtTime)
 S = TypeVar("S")
 
 Found = tuple[S | None, bool]
@@ -41,7 +41,7 @@ def changes(
 
     Parameters
     ----------
-    low, high : Known
+    low, high : AnswerAtTime
         The answers at the earlier and the later time.
     look : callable
         The answer at a time between, given that time and the two around it.

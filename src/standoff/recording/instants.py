@@ -28,7 +28,7 @@ from standoff.recording.tolerances import (
     RATE_STENCIL,
     SWITCH_PROOF,
 )
-from standoff.tracking.calls import DESCEND, Frame, start, step
+from standoff.tracking.calls import DESCEND, FrameInput, start, step
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.proximity import Event
 from standoff.tracking.rows import AnswerRows, StateRow
@@ -55,7 +55,7 @@ def resolution_between(before: float, after: float) -> float:
     return max(INSTANT_RESOLUTION * (after - before), spacing)
 
 
-class Known(NamedTuple):
+class ModeAtTime(NamedTuple):
     """The answer at one time: its mode is the pair of packed features."""
 
     time: float
@@ -67,7 +67,7 @@ class Known(NamedTuple):
         return int(a), int(b)
 
 
-class Switch(NamedTuple):
+class ModeSwitch(NamedTuple):
     """A change of mode at a time; value and slope are those of its switching function."""
 
     time: float
@@ -81,7 +81,7 @@ class NotKnown(ArithmeticError):
     """The features at some time within the step are not certain."""
 
 
-class Step:
+class FrameStep:
     """One frame's step, to be looked into.
 
     Parameters
@@ -108,13 +108,13 @@ class Step:
     ) -> None:
         self.tracker, self.motion, self.state = tracker, motion, state
         self.pair = tracker.a, tracker.b
-        self.first, self.last = Known(before, state.proximity.row), Known(after, row)
+        self.first, self.last = ModeAtTime(before, state.proximity.row), ModeAtTime(after, row)
         self.length = after - before
         self.resolution = resolution_between(before, after)
         self.paper = isinstance(tracker.law, PaperLaw)
         self.answers = 0
 
-    def switches(self) -> list[Switch] | None:
+    def switches(self) -> list[ModeSwitch] | None:
         """Return the switches in order of time; None where one of them cannot be located."""
         try:
             if not self.paper:
@@ -126,14 +126,14 @@ class Step:
                 self.last,
                 self._known,
                 self.resolution,
-                lambda low, high: Switch(high.time, low.mode, high.mode),
+                lambda low, high: ModeSwitch(high.time, low.mode, high.mode),
                 None if self.paper else self._by_root,
                 ROOT_TRIES,
             )
         except NotKnown:
             return None
 
-    def _known(self, time: float, low: Known, high: Known) -> Known:
+    def _known(self, time: float, low: ModeAtTime, high: ModeAtTime) -> ModeAtTime:
         self.answers += 1
         if self.answers > MOST_ANSWERS:
             raise NotKnown(f"more than {MOST_ANSWERS} answers in one step")
@@ -142,39 +142,39 @@ class Step:
         # From the higher features: a slope too small to release a feature does not hold it there.
         return self._descended(time, max(low, high, key=self._freedom))
 
-    def _freedom(self, known: Known) -> int:
+    def _freedom(self, known: ModeAtTime) -> int:
         return sum(
             ("vertex", "edge", "face").index(feature_of(body, number).kind)
             for body, number in zip(self.pair, known.mode, strict=True)
         )
 
-    def _descended(self, time: float, near: Known) -> Known:
+    def _descended(self, time: float, near: ModeAtTime) -> ModeAtTime:
         """Descend to the minimum at a time from the features and parameters of a known answer."""
         row, state = AnswerRows(near.row), StateRow()
         state.mode, state.q = row.mode, row.q
         tracker = self.tracker
-        frame = Frame(*self.motion(time), True)
+        frame = FrameInput(*self.motion(time), True)
         found, fine = start(tracker.table, frame, state, DESCEND)
         if not fine or found.status != Status.CONVERGED.value:
             raise NotKnown(f"no certified answer at {time} s")
-        return Known(time, found.data)
+        return ModeAtTime(time, found.data)
 
-    def _stepped(self, time: float) -> Known:
+    def _stepped(self, time: float) -> ModeAtTime:
         """Step the law from the frame before to a time within."""
         tracker, state = self.tracker, StateRow(self.state.data.copy())
         h = time - self.first.time
-        found, fine = step(tracker.table, Frame(*self.motion(time), True), h, state)
+        found, fine = step(tracker.table, FrameInput(*self.motion(time), True), h, state)
         if not fine or found.status not in (Status.CONVERGED.value, Status.TRACKING.value):
             raise NotKnown(f"no answer at {time} s")
-        return Known(time, found.data)
+        return ModeAtTime(time, found.data)
 
-    def _by_root(self, low: Known, high: Known) -> Found[Switch]:
+    def _by_root(self, low: ModeAtTime, high: ModeAtTime) -> Found[ModeSwitch]:
         root = self._root(low, high)
         if root is None or self._proven(root, low, high):
             return root, False
         return None, True
 
-    def _root(self, low: Known, high: Known) -> Switch | None:
+    def _root(self, low: ModeAtTime, high: ModeAtTime) -> ModeSwitch | None:
         """Return the root of the switching function between two answers, if there is one."""
         bodies = [s for s in range(2) if low.mode[s] != high.mode[s]]
         if len(bodies) > 1:
@@ -198,11 +198,11 @@ class Step:
             reach = RATE_STENCIL * self.length
             left, right = max(at - reach, self.first.time), min(at + reach, self.last.time)
             slope = sign * (value(right) - value(left)) / (right - left)
-            return Switch(at, low.mode, high.mode, sign * value(at), slope)
+            return ModeSwitch(at, low.mode, high.mode, sign * value(at), slope)
         except NoMinimum:
             return None
 
-    def _proven(self, root: Switch, low: Known, high: Known) -> bool:
+    def _proven(self, root: ModeSwitch, low: ModeAtTime, high: ModeAtTime) -> bool:
         """Are the features just before and after a root those of the two answers around it?"""
         aside = max(SWITCH_PROOF * self.length, self.resolution)
         if root.slope != 0.0:
@@ -233,12 +233,14 @@ def _crossing(
     return max(root, math.nextafter(low, high))
 
 
-def located_events(step: Step, frame: int, told: tuple[Event, ...]) -> list[RecordedEvent] | None:
+def located_events(
+    step: FrameStep, frame: int, told: tuple[Event, ...]
+) -> list[RecordedEvent] | None:
     """Return a frame's events with their instants; None where they cannot be located.
 
     Parameters
     ----------
-    step : Step
+    step : FrameStep
     frame : int
     told : tuple of Event
         The tracker's own events of this frame. Where several lie at one instant their features

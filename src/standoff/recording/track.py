@@ -17,7 +17,7 @@ from standoff.kernels.state import arrays as K
 from standoff.motion import PoseLike, TwistLike
 from standoff.motion.moving import MotionLike, Moving, moving
 from standoff.progress import Progress
-from standoff.recording.instants import Motion, Step, located_events
+from standoff.recording.instants import FrameStep, Motion, located_events
 from standoff.recording.recording import RecordedEvent, Recording, RunInfo
 from standoff.recording.times import even_times
 from standoff.tracking.inputs import (
@@ -38,7 +38,7 @@ or a doubtful answer: shorter blocks would call more often, longer ones repeat m
 
 
 @runtime_checkable
-class Recorded(Protocol):
+class RecordingTracker(Protocol):
     """A tracker of another kind, as that of solids, which are above this layer: it records its own
     runs."""
 
@@ -94,7 +94,7 @@ def track(
     -------
     Recording
     """
-    if not isinstance(tracker, Tracker | Recorded):
+    if not isinstance(tracker, Tracker | RecordingTracker):
         raise StandoffTypeError(
             f"{shown(tracker)} is not a Tracker: make one with so.Tracker(a, b, dt).",
             "tracker",
@@ -138,7 +138,7 @@ def track_along(
     -------
     Recording
     """
-    if isinstance(tracker, Recorded):
+    if isinstance(tracker, RecordingTracker):
         paths = path_a, path_b
         return tracker.recorded_along(paths, times, state, locate=locate, progress=progress)
     if state is not None:
@@ -217,7 +217,7 @@ class _Run:
         # beyond the horizon there are none: what came of a switch there is dated to a frame
         outside = outside and not state.proximity.far
         if self.locate and known and outside:
-            step = Step(self.tracker, self._flat, state, before, time, answer.row)
+            step = FrameStep(self.tracker, self._flat, state, before, time, answer.row)
             events = located_events(step, frame, answer.events)
             if events is not None:
                 return events

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from standoff.best_first import Part, Searched, best_first
+from standoff.best_first import SearchOutcome, SearchPart, best_first
 from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import not_negative, whole_number, yes_or_no
 from standoff.errors import StandoffError
@@ -20,16 +20,16 @@ from standoff.robots.joints import JointKind
 from standoff.robots.limits import check_limits, joint_of
 from standoff.robots.motion_bounds import Reaches
 from standoff.robots.motions import Motions
-from standoff.robots.proof import BoxCounts, Boxes, BoxProof, Verdict, Witness
+from standoff.robots.proof import BoxCounts, BoxProof, JointBoxes, Verdict, Witness
 from standoff.robots.robot_model import RobotModel
-from standoff.robots.sight import Apart, Sight, closing, some_of
+from standoff.robots.sight import Separations, Sight, closing, some_of
 from standoff.typing import Array, Ints
 
 BATCH = 64
 """Boxes that are split together."""
 
 
-class Box(NamedTuple):
+class JointBox(NamedTuple):
     """A part of a box of configurations.
 
     Attributes
@@ -45,7 +45,7 @@ class Box(NamedTuple):
         A lower bound of those pairs' distances in it, less roundoff [length].
     violated : bool
         Is a pair proven to be nearer than the clearance everywhere in it?
-    least : Apart or None
+    least : Separations or None
         In its middle, of the pair that is nearest by its upper bound.
     nearest : int
         That pair; -1 if no pair was asked.
@@ -58,7 +58,7 @@ class Box(NamedTuple):
     split: int = -1
     bound: float = math.inf
     violated: bool = False
-    least: Apart | None = None
+    least: Separations | None = None
     nearest: int = -1
 
 
@@ -101,7 +101,7 @@ def certify_box(
     whole_number(max_boxes, "max_boxes")
     whole_number(workers, "workers")
     low, high = _checked(robot, lower, upper)
-    search = _Search(Sight(robot, workers), low, high, clearance)
+    search = _JointBoxSearch(Sight(robot, workers), low, high, clearance)
     return search.run(max_boxes, yes_or_no(whole, "whole"))
 
 
@@ -150,7 +150,7 @@ def _checked(robot: RobotModel, lower: Any, upper: Any) -> tuple[Array, Array]:
     return low, high
 
 
-class _Search:
+class _JointBoxSearch:
     def __init__(self, sight: Sight, lower: Array, upper: Array, clearance: float) -> None:
         self.sight, self.clearance = sight, clearance
         self.lower, self.upper = lower, upper
@@ -167,7 +167,7 @@ class _Search:
     def run(self, most: int, whole: bool) -> BoxProof:
         splits = (most - 1) // 2
         batch = max(1, min(BATCH, splits // 4))
-        every = Box(self.lower, self.upper, 1.0, np.arange(self.sight.pairs))
+        every = JointBox(self.lower, self.upper, 1.0, np.arange(self.sight.pairs))
         found = best_first(
             self.looked_at([every]),
             lambda parts: self.looked_at([half for part in parts for half in _halves(part.body)]),
@@ -177,7 +177,7 @@ class _Search:
         )
         return self._answer(found)
 
-    def looked_at(self, boxes: list[Box]) -> list[Part[Box]]:
+    def looked_at(self, boxes: list[JointBox]) -> list[SearchPart[JointBox]]:
         """Bound the distances of all pairs in some boxes."""
         self.boxes += len(boxes)
         at = np.repeat(np.arange(len(boxes)), [len(box.pairs) for box in boxes])
@@ -207,13 +207,15 @@ class _Search:
             if len(asked):
                 best = int(asked[np.argmin(apart.upper[asked])])
                 own = own._replace(
-                    least=Apart._make(each[best : best + 1] for each in apart),
+                    least=Separations._make(each[best : best + 1] for each in apart),
                     nearest=int(pairs[ask[best]]),
                 )
             found.append(self._part(own, pairs[mine], bound[mine], middle.reaches, mine))
         return found
 
-    def _part(self, box: Box, pairs: Ints, bound: Array, reaches: Reaches, rows: Ints) -> Part[Box]:
+    def _part(
+        self, box: JointBox, pairs: Ints, bound: Array, reaches: Reaches, rows: Ints
+    ) -> SearchPart[JointBox]:
         """A box as the search takes it."""
         open_ = bound < self.clearance
         self.proven = min(self.proven, float(bound[~open_].min(initial=math.inf)))
@@ -224,9 +226,9 @@ class _Search:
             worst = int(rows[int(np.argmin(bound))])
             box = box._replace(pairs=pairs[open_], split=self._longest(box, reaches, worst))
         closed = not open_.any() or box.violated or box.split < 0
-        return Part(box.bound - self.clearance, box, seen, closed)
+        return SearchPart(box.bound - self.clearance, box, seen, closed)
 
-    def _longest(self, box: Box, reaches: Reaches, row: int) -> int:
+    def _longest(self, box: JointBox, reaches: Reaches, row: int) -> int:
         """The number of q that moves a pair most in a box; -1 where none can be halved."""
         watched = self.sight.watched
         pair_ways = reaches.h[row] * np.minimum(reaches.r_a[row], reaches.r_b[row])
@@ -237,7 +239,7 @@ class _Search:
         moved[~(box.upper - box.lower > self.least)] = 0.0
         return int(np.argmax(moved)) if moved.any() else -1
 
-    def _answer(self, found: Searched[Box]) -> BoxProof:
+    def _answer(self, found: SearchOutcome[JointBox]) -> BoxProof:
         every = [*found.open, *found.closed]
         free = [part.body for part in every if part.bound >= 0.0]
         bad = [part.body for part in every if part.bound < 0.0 and part.body.violated]
@@ -269,7 +271,7 @@ class _Search:
             open_boxes=_stacked(rest),
         )
 
-    def _witness(self, box: Box | None) -> Witness | None:
+    def _witness(self, box: JointBox | None) -> Witness | None:
         """The nearest pair in the middle of a box."""
         if box is None or box.least is None:
             return None
@@ -284,22 +286,24 @@ def _ways(motions: Motions, half: Array) -> Array:
     return found
 
 
-def _halves(box: Box) -> list[Box]:
+def _halves(box: JointBox) -> list[JointBox]:
     middle = 0.5 * (box.lower[box.split] + box.upper[box.split])
     upper, lower = box.upper.copy(), box.lower.copy()
     upper[box.split] = lower[box.split] = middle
     share = 0.5 * box.share
     return [
-        Box(box.lower, upper, share, box.pairs),
-        Box(lower, box.upper, share, box.pairs),
+        JointBox(box.lower, upper, share, box.pairs),
+        JointBox(lower, box.upper, share, box.pairs),
     ]
 
 
-def _stacked(boxes: list[Box]) -> Boxes:
+def _stacked(boxes: list[JointBox]) -> JointBoxes:
     nothing = np.zeros((0, 0))
     if not boxes:
-        return Boxes(nothing, nothing)
-    found = Boxes(np.stack([box.lower for box in boxes]), np.stack([box.upper for box in boxes]))
+        return JointBoxes(nothing, nothing)
+    found = JointBoxes(
+        np.stack([box.lower for box in boxes]), np.stack([box.upper for box in boxes])
+    )
     for array in found:
         array.flags.writeable = False
     return found

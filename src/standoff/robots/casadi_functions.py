@@ -54,10 +54,10 @@ def casadi_distance(
     check_robot(robot)
     check_name(name)
     choice(undefined, "undefined", UNDEFINED)
-    return _Value(PairsByQ(robot, [(str(a), str(b)) for a, b in pairs], undefined), name)
+    return _RobotValue(PairsByQ(robot, [(str(a), str(b)) for a, b in pairs], undefined), name)
 
 
-class _Value(NamedCallback):
+class _RobotValue(NamedCallback):
     """q to the distances."""
 
     def __init__(self, pairs: PairsByQ, name: str) -> None:
@@ -85,10 +85,10 @@ class _Jacobian(NamedCallback):
         blocks = self.jacobian_outputs(outputs)
         last = list(blocks)[-1]  # nothing depends on the values that come in with q
         blocks[last] = casadi.Sparsity(blocks[last].shape)
-        return _Hessian(self.pair, name, sizes, blocks, options)
+        return _RobotHessian(self.pair, name, sizes, blocks, options)
 
 
-class _Hessian(NamedCallback):
+class _RobotHessian(NamedCallback):
     """The same and the Jacobian to its derivatives, its entries by columns."""
 
     def eval(self, given: Any) -> Any:

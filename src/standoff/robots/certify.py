@@ -19,11 +19,11 @@ from standoff.progress import Progress
 from standoff.robots.certify_tolerances import ASKED_CLEARANCE, BRACKET, SHORTEST_STEP
 from standoff.robots.limits import check_limits
 from standoff.robots.motion_bounds import bends, least_speed, seen_from
-from standoff.robots.motions import Frames
-from standoff.robots.paths import BoundedPath, JointPath, joint_path
+from standoff.robots.motions import LinkFrames
+from standoff.robots.paths import BoundedFunctionPath, JointPath, joint_path
 from standoff.robots.proof import How, Names, PathCounts, PathProof, Span, Steps, Verdict, Witness
 from standoff.robots.robot_model import RobotModel
-from standoff.robots.sight import Apart, Middle, Sight, closing, some_of
+from standoff.robots.sight import Middle, Separations, Sight, closing, some_of
 from standoff.robots.watched import turned
 from standoff.typing import Array, Bools, Ints
 
@@ -73,7 +73,7 @@ def certify(
     whole_number(max_steps, "max_steps")
     whole_number(workers, "workers")
     read = joint_path(path, robot.kinematics, times)
-    search = _Search(Sight(robot, workers), read, clearance, max_steps)
+    search = _PathSearch(Sight(robot, workers), read, clearance, max_steps)
     return search.run(progress)
 
 
@@ -83,7 +83,7 @@ one as for hundreds."""
 DEEPER = 2
 
 
-class _Search:
+class _PathSearch:
     def __init__(self, sight: Sight, path: JointPath, clearance: float, budget: int) -> None:
         self.sight, self.path = sight, path
         self.clearance, self.budget = clearance, budget
@@ -100,7 +100,7 @@ class _Search:
         )
         self.least = SHORTEST_STEP * (path.end - path.start)
         self.tried = 0
-        self.violation: tuple[float, int, Apart] | None = None
+        self.violation: tuple[float, int, Separations] | None = None
         self.proven: list[tuple[Intervals, Array, How]] = []
         self.brackets: list[Intervals] = []
         self.stuck: list[Intervals] = []
@@ -167,7 +167,7 @@ class _Search:
         return joined(parts)
 
     def _reached(
-        self, now: Intervals, where: tuple[Array, Frames, Ints], middle: Middle
+        self, now: Intervals, where: tuple[Array, LinkFrames, Ints], middle: Middle
     ) -> Intervals:
         """Intervals over several pieces of the path: by the distance in their middle, if it can be
         enough."""
@@ -202,7 +202,7 @@ class _Search:
         bound = np.maximum(bound, straight) + self.clearance
         return now.some(self._note(now, bound, How.CHORD))
 
-    def _asked(self, now: Intervals, where: tuple[Array, Frames, Ints]) -> tuple[Array, Array]:
+    def _asked(self, now: Intervals, where: tuple[Array, LinkFrames, Ints]) -> tuple[Array, Array]:
         """What is known at the ends of the intervals, after asking where nothing was."""
         q, frames, at = where
         known = np.concatenate([now.before, now.after])
@@ -230,7 +230,7 @@ class _Search:
         return least_speed(middle.reaches, self._rates(now, middle)[0]).bound
 
     def _sags(
-        self, now: Intervals, frames: Frames, ends: tuple[Ints, Ints], middle: Middle
+        self, now: Intervals, frames: LinkFrames, ends: tuple[Ints, Ints], middle: Middle
     ) -> Array:
         """How far below their chord the separations may sag: S of ``standoff.impact.search``, seen
         from the link where it is least; infinite of solids, which no plane need part."""
@@ -269,12 +269,12 @@ class _Search:
         found: Array = np.where(last - first > 1, breaks, 0.5 * (now.first + now.last))
         return found
 
-    def _at(self, times: Array) -> tuple[Array, Frames, Ints]:
+    def _at(self, times: Array) -> tuple[Array, LinkFrames, Ints]:
         """(configurations, frames, number of each time's) at times, each once."""
         unique, at = np.unique(times, return_inverse=True)
         q = self.path.at(unique)
         check_limits(self.sight.robot, q, "path", unique)
-        if isinstance(self.path, BoundedPath):
+        if isinstance(self.path, BoundedFunctionPath):
             self.path.check_speeds(unique, q, self.sight.watched.motions)
         return q, self.sight.frames(q), at.reshape(-1)
 
@@ -308,14 +308,14 @@ class _Search:
             self.proven.append((now.some(proven), bound[proven] - self.doubt, how))
         return ~proven
 
-    def _notice(self, pairs: Ints, times: Array, apart: Apart) -> None:
+    def _notice(self, pairs: Ints, times: Array, apart: Separations) -> None:
         """Keep the first instant at which a pair is proven to be nearer than the clearance."""
         bad = np.flatnonzero(apart.upper + self.doubt < self.clearance)
         if not len(bad):
             return
         k = int(bad[np.argmin(times[bad])])
         if self.violation is None or times[k] < self.violation[0]:
-            one = Apart._make(each[k : k + 1] for each in apart)
+            one = Separations._make(each[k : k + 1] for each in apart)
             self.violation = float(times[k]), int(pairs[k]), one
 
     def _split(self, left: Intervals) -> Intervals:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from standoff.motion import Pose
-from standoff.robots.kinematics import Motion
+from standoff.robots.kinematics import GeometryMotion
 from standoff.typing import Array
 
 
@@ -30,7 +30,7 @@ def from_wxyz(quaternion: Any) -> Array:
     return np.asarray(Pose.from_wxyz(quaternion).rotation)
 
 
-def jacobians_of(motion: Motion, support: Array, fold: Array | None) -> Array:
+def jacobians_of(motion: GeometryMotion, support: Array, fold: Array | None) -> Array:
     """(n, 6, nv): (v, omega) of the origins of n frames by the velocity."""
     origins, omega = motion.poses[:, :3, 3], motion.screws[3:].T
     v = motion.screws[:3].T + np.cross(omega[None], origins[:, None])

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Protocol
 from standoff.typing import Array
 
 
-class Motion(NamedTuple):
+class GeometryMotion(NamedTuple):
     """Where the moving geometries are, and how each degree of freedom moves them.
 
     Attributes
@@ -51,7 +51,7 @@ class Kinematics(Protocol):
     def poses(self, q: Array) -> Array:
         """(n_moving, 4, 4) world poses."""
 
-    def motion(self, q: Array) -> Motion:
+    def motion(self, q: Array) -> GeometryMotion:
         """Poses and the screws of the joints."""
 
     def jacobians(self, q: Array) -> Array:

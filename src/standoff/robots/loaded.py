@@ -11,7 +11,7 @@ from standoff.robots.geoms import Geoms
 from standoff.robots.joints import Joints
 from standoff.robots.kinematics import Kinematics
 from standoff.robots.report import STILL, GeomReport
-from standoff.robots.shapes import Made
+from standoff.robots.shapes import GeometryBodies
 
 
 class Loaded(NamedTuple):
@@ -49,7 +49,7 @@ def loaded(
     source: str,
     kinematics: Kinematics,
     joints: Joints,
-    made: Made,
+    made: GeometryBodies,
     left_out: dict[tuple[int, int], str],
     notes: tuple[str, ...],
 ) -> Loaded:

@@ -12,7 +12,7 @@ from standoff.robots.joints import SLIDES, JointKind
 from standoff.typing import Array, Ints
 
 
-class Followed(NamedTuple):
+class MimicModel(NamedTuple):
     """A model all of whose joints have numbers of their own, some of which follow others'.
 
     Attributes
@@ -50,7 +50,7 @@ class Followed(NamedTuple):
         return found
 
 
-def followed(model: Any, mimics: Mapping[int, tuple[int, float, float]]) -> Followed:
+def followed(model: Any, mimics: Mapping[int, tuple[int, float, float]]) -> MimicModel:
     """The numbers of a model by those that follow no other."""
     own = [j for j in range(1, model.njoints) if j not in mimics]
     own_q, own_v = (
@@ -74,7 +74,7 @@ def followed(model: Any, mimics: Mapping[int, tuple[int, float, float]]) -> Foll
         )
         for j, (master, ratio, offset) in mimics.items()
     )
-    return Followed(dict(mimics), own_q, own_v, q_at, v_at, fold, places)
+    return MimicModel(dict(mimics), own_q, own_v, q_at, v_at, fold, places)
 
 
 def read_as(

@@ -9,7 +9,7 @@ import numpy as np
 from standoff.checks.numbers import not_negative, number
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.certify_tolerances import ASKED_CLEARANCE
-from standoff.robots.near import Near
+from standoff.robots.near import NearLinks
 from standoff.robots.robot import Robot
 
 with of_extra("mink", "mink"):
@@ -59,7 +59,7 @@ class MinkLimit(Limit):  # type: ignore[misc]
                 "gain",
                 gain,
             )
-        self._near = Near(robot, self.minimum, within)
+        self._near = NearLinks(robot, self.minimum, within)
 
     def compute_qp_inequalities(self, configuration: Any, dt: float) -> Constraint:
         """Rows G, h with G Δq <= h, as mink asks for; Δq is the way of one step, whatever dt is.

@@ -26,8 +26,8 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.robots.certify_tolerances import BOUND_INFLATION, REACH_ROUNDOFF
-from standoff.robots.motions import Frames
-from standoff.robots.watched import Seen, Watched
+from standoff.robots.motions import LinkFrames
+from standoff.robots.watched import PlacedCores, Watched
 from standoff.typing import Array, Bools, Ints
 
 
@@ -81,7 +81,12 @@ class Cut(NamedTuple):
 
 
 def reaches_of(
-    watched: Watched, pairs: Ints, frames: Frames, at: Ints, ways: Array, seen: tuple[Seen, Seen]
+    watched: Watched,
+    pairs: Ints,
+    frames: LinkFrames,
+    at: Ints,
+    ways: Array,
+    seen: tuple[PlacedCores, PlacedCores],
 ) -> Reaches:
     """The reaches of pairs, each at the configuration `at` of several.
 
@@ -89,7 +94,7 @@ def reaches_of(
     ----------
     watched : Watched
     pairs, at : (k,) arrays of int
-    frames : Frames
+    frames : LinkFrames
         At those configurations.
     ways : (k, nm + 1) array
         How far each of the robot's motions can go from there; the last is 0.
@@ -129,7 +134,7 @@ def _raised(w: Array, length: float) -> Array:
     return w * (1.0 + BOUND_INFLATION) + length * REACH_ROUNDOFF
 
 
-def _from_axes(seen: Seen, half: Array, axes: Array, origins: Array) -> Array:
+def _from_axes(seen: PlacedCores, half: Array, axes: Array, origins: Array) -> Array:
     """(k, n): the greatest distance of a core's points from axes, or from points where an axis is
     0, at the configuration itself."""
     arms = seen.centres[:, None] - origins
@@ -165,7 +170,9 @@ def least_speed(reaches: Reaches, rates: Array) -> Cut:
     return seen_from(_sums(rates * reaches.w_a, rates * reaches.w_b), reaches)
 
 
-def least_way_along(reaches: Reaches, normals: Array, seen: tuple[Seen, Seen], half: Array) -> Cut:
+def least_way_along(
+    reaches: Reaches, normals: Array, seen: tuple[PlacedCores, PlacedCores], half: Array
+) -> Cut:
     """How far they can come together along directions (k, 3), from A to B, that stay fixed in the
     cut's frame (length): what each motion by itself does along them, and as much more as the
     motions before it can turn the direction.
@@ -218,7 +225,7 @@ def _count(on: _Along, i: int, cost: Array, turned: Array) -> None:
     turned += on.turn[:, i, None]
 
 
-def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) -> _Along:
+def _along(reaches: Reaches, normals: Array, seen: PlacedCores, half: Array, r: Array) -> _Along:
     """What each motion does to a core along directions."""
     axes, turns = reaches.axes, reaches.turns > 0.0
     free = ~axes.any(axis=2)  # of an axis of its own nothing is known
@@ -241,7 +248,7 @@ def _along(reaches: Reaches, normals: Array, seen: Seen, half: Array, r: Array) 
     return _Along(first, way, part, turn)
 
 
-def _spread(directions: Array, seen: Seen, half: Array) -> Array:
+def _spread(directions: Array, seen: PlacedCores, half: Array) -> Array:
     """(k, n): how far a core reaches from its centre along directions (k, n, 3)."""
     along = np.abs(np.einsum("kni,kij->knj", directions, seen.axes))
     found: Array = np.einsum("knj,kj->kn", along, half)

@@ -19,7 +19,7 @@ WORLD = -1
 """The frame of the world among those of the motions: the last one."""
 
 
-class Frames(NamedTuple):
+class LinkFrames(NamedTuple):
     """World poses of the frames that the motions carry, at m configurations; the last is the world.
 
     Attributes
@@ -109,7 +109,7 @@ class Motions(NamedTuple):
             found[:, k] = rates[:, k] * rates[:, turn]
         return found
 
-    def frames(self, q: Array) -> Frames:
+    def frames(self, q: Array) -> LinkFrames:
         """Where the motions' frames are at configurations (m, nq)."""
         m, n = len(q), self.size
         rotations, origins = np.zeros((m, n + 1, 3, 3)), np.zeros((m, n + 1, 3))
@@ -127,7 +127,7 @@ class Motions(NamedTuple):
                 origins[:, k] += np.einsum("mij,mj->mi", here, given)
             else:
                 origins[:, k] += (here @ self.axes[k]) * self._position(k, given)[:, None]
-        return Frames(rotations, origins)
+        return LinkFrames(rotations, origins)
 
     def _position(self, k: int, given: Array) -> Array:
         found: Array = self.ratios[k] * given[:, 0] + self.offsets[k]

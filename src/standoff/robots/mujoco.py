@@ -20,7 +20,7 @@ from standoff.robots.configurations import Configurations
 from standoff.robots.frames import frame, frames, from_wxyz, jacobians_of
 from standoff.robots.geoms import Geoms
 from standoff.robots.joints import JointKind, Joints
-from standoff.robots.kinematics import Motion
+from standoff.robots.kinematics import GeometryMotion
 from standoff.robots.loaded import Loaded, loaded
 from standoff.robots.mujoco_pairs import pairs_left_out, watched_pairs
 from standoff.robots.report import GIVEN, GeomReport
@@ -99,7 +99,7 @@ class MujocoKinematics:
             mujoco.mj_kinematics(self.model, self._data)
             return self._placed()
 
-    def motion(self, q: Array) -> Motion:
+    def motion(self, q: Array) -> GeometryMotion:
         data = self._data
         with self._lock:
             data.qpos[:] = q
@@ -108,7 +108,7 @@ class MujocoKinematics:
             # MuJoCo's are about the centre of mass of each tree, angular first
             omega, v = data.cdof[:, :3], data.cdof[:, 3:]
             v = v + np.cross(data.subtree_com[self._roots], omega)
-            return Motion(self._placed(), np.concatenate([v, omega], axis=1).T)
+            return GeometryMotion(self._placed(), np.concatenate([v, omega], axis=1).T)
 
     def jacobians(self, q: Array) -> Array:
         return jacobians_of(self.motion(q), self.support, self.fold)

@@ -12,7 +12,7 @@ import numpy as np
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.mujoco_pairs import watched_pairs
 from standoff.robots.mujoco_robot import model_of, watched
-from standoff.robots.near import Near
+from standoff.robots.near import NearLinks
 from standoff.robots.report import GIVEN
 from standoff.robots.robot import Robot
 from standoff.robots.rows import RobotRows
@@ -57,7 +57,7 @@ class MujocoContacts:
     """
 
     def __init__(self, robot: Robot, pairs: Sequence[tuple[str, str]] | None = None) -> None:
-        Near(robot, -math.inf, None)
+        NearLinks(robot, -math.inf, None)
         model, numbers = model_of(robot)
         ours = _smooth(robot, model, numbers) if pairs is None else watched(robot, pairs)
         self._mixed = {(i, j): mixed(model, numbers[i], numbers[j]) for i, j in ours}
@@ -70,7 +70,7 @@ class MujocoContacts:
             for piece in pieces_of(body)
             if piece.body.bounded
         ]
-        self._near = Near(robot, -math.inf, reach + CONTACT_HORIZON * min(sizes, default=1.0))
+        self._near = NearLinks(robot, -math.inf, reach + CONTACT_HORIZON * min(sizes, default=1.0))
         self._theirs = {frozenset((numbers[i], numbers[j])) for i, j in ours}
         self.model = copy.copy(model)
         if self._theirs == {frozenset(pair) for pair in watched_pairs(model)}:

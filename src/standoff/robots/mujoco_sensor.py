@@ -8,7 +8,7 @@ from typing import Any
 
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.mujoco_robot import model_of, watched
-from standoff.robots.near import Near
+from standoff.robots.near import NearLinks
 from standoff.robots.robot import Robot
 
 with of_extra("MuJoCo", "mujoco"):
@@ -43,7 +43,7 @@ class MujocoSensor:
         *,
         within: float | None = None,
     ) -> None:
-        self._near = Near(robot, -math.inf, within)
+        self._near = NearLinks(robot, -math.inf, within)
         model, _ = model_of(robot)
         self._size = (model.nq, model.nsensordata)
         self._sensors = [

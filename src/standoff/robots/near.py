@@ -13,7 +13,7 @@ from standoff.robots.rows import RobotRows
 from standoff.robots.state import RobotState
 
 
-class Near:
+class NearLinks:
     """What a controller asks again and again: the rows within a horizon, warm.
 
     Attributes

@@ -157,7 +157,7 @@ class FunctionPath(NamedTuple):
     start: float = 0.0
 
 
-class BoundedPath(JointPath):
+class BoundedFunctionPath(JointPath):
     """A `FunctionPath` of a robot, read."""
 
     def __init__(self, given: FunctionPath, kinematics: Kinematics) -> None:

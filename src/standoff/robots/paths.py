@@ -10,7 +10,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.robots.certify_tolerances import SPEED_SLACK
 from standoff.robots.kinematics import Kinematics
-from standoff.robots.path_kinds import BoundedPath, FunctionPath, JointPath, StraightPath
+from standoff.robots.path_kinds import BoundedFunctionPath, FunctionPath, JointPath, StraightPath
 from standoff.typing import Array, Ints
 
 
@@ -29,7 +29,7 @@ def joint_path(path: Any, kinematics: Kinematics, times: Any = None) -> JointPat
     if isinstance(path, FunctionPath):
         if times is not None:
             raise StandoffError("times: a function has its own.", "times", times)
-        return BoundedPath(path, kinematics)
+        return BoundedFunctionPath(path, kinematics)
     if callable(path):
         raise StandoffTypeError(
             f"path = {shown(path)}: of a function, or of a spline that is no PPoly, BPoly or "
@@ -41,7 +41,7 @@ def joint_path(path: Any, kinematics: Kinematics, times: Any = None) -> JointPat
     return StraightPath(path, kinematics, times)
 
 
-__all__ = ["BoundedPath", "FunctionPath", "JointPath", "joint_path"]
+__all__ = ["BoundedFunctionPath", "FunctionPath", "JointPath", "joint_path"]
 
 
 # Splines in q as joint paths.

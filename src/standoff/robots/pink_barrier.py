@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.checks.numbers import number, positive, whole_number
 from standoff.errors import StandoffError, of_extra
-from standoff.robots.near import Near
+from standoff.robots.near import NearLinks
 from standoff.robots.robot import Robot
 from standoff.typing import Array
 
@@ -53,7 +53,7 @@ class PinkBarrier(Barrier):  # type: ignore[misc]
         safe_displacement_gain: float = 1.0,
     ) -> None:
         self.minimum = number(minimum, "minimum")
-        self._near = Near(robot, self.minimum, within)
+        self._near = NearLinks(robot, self.minimum, within)
         every = len(robot.pairs)
         rows = every if n_pairs is None else whole_number(n_pairs, "n_pairs")
         if not 0 < rows <= every:

@@ -14,11 +14,11 @@ from standoff.errors import StandoffError, StandoffTypeError, of_extra
 from standoff.robots.configurations import Configurations
 from standoff.robots.frames import jacobians_of
 from standoff.robots.joints import Joints
-from standoff.robots.kinematics import Motion
+from standoff.robots.kinematics import GeometryMotion
 from standoff.robots.loaded import Loaded, loaded
-from standoff.robots.mimics import Followed
-from standoff.robots.pinocchio_joints import Rows, read_joints
-from standoff.robots.pinocchio_shapes import Shape, read_shape
+from standoff.robots.mimics import MimicModel
+from standoff.robots.pinocchio_joints import JointMotions, read_joints
+from standoff.robots.pinocchio_shapes import GeometryShape, read_shape
 from standoff.robots.report import NO_SUCH_PAIR
 from standoff.robots.shapes import Meshes, Source, made_geoms
 from standoff.typing import Array, Ints
@@ -44,7 +44,7 @@ class PinocchioKinematics:
         joints: Joints,
         carriers: Ints,
         placements: Array,
-        follows: Followed | None = None,
+        follows: MimicModel | None = None,
     ) -> None:
         """`carriers`: the model's joint of each moving geometry; `placements` in its frame.
         `follows`: numbers of the model's q that are none of the robot's."""
@@ -85,12 +85,12 @@ class PinocchioKinematics:
             pin.forwardKinematics(self.model, self._data, self._whole(q))
             return self._placed()
 
-    def motion(self, q: Array) -> Motion:
+    def motion(self, q: Array) -> GeometryMotion:
         with self._lock:
             # its columns are about the world's origin, linear first
             screws = np.array(pin.computeJointJacobians(self.model, self._data, self._whole(q)))
             # of one joint it is a vector
-            return Motion(self._placed(), screws.reshape(6, -1))
+            return GeometryMotion(self._placed(), screws.reshape(6, -1))
 
     def jacobians(self, q: Array) -> Array:
         return jacobians_of(self.motion(q), self.support, self.fold)
@@ -109,7 +109,7 @@ class PinocchioKinematics:
         return found if self._follows is None else found[self._follows.own_q]
 
 
-def _folded(model: Any, follows: Followed | None) -> tuple[Array | None, dict[int, slice]]:
+def _folded(model: Any, follows: MimicModel | None) -> tuple[Array | None, dict[int, slice]]:
     """How v moves the columns of Pinocchio's Jacobian, and each joint's columns in it.
 
     Joints that mimic another have columns of their own, scaled, and none of v.
@@ -160,7 +160,7 @@ class Reading(NamedTuple):
     ----------
     what : str
         The model, for messages.
-    follows : Followed or None
+    follows : MimicModel or None
     shapes : mapping of str to Shape
         What geometries are that only stand for others, by name.
     left_out : callable or None
@@ -169,8 +169,8 @@ class Reading(NamedTuple):
     """
 
     what: str
-    follows: Followed | None
-    shapes: Mapping[str, Shape]
+    follows: MimicModel | None
+    shapes: Mapping[str, GeometryShape]
     left_out: Callable[[str, str], str | None] | None
     notes: tuple[str, ...]
 
@@ -205,7 +205,9 @@ def assembled(
     return loaded(reading.what, kinematics, joints, made, left_out, notes)
 
 
-def _source(model: Any, rows: Rows, given: Any, shapes: Mapping[str, Shape]) -> Source:
+def _source(
+    model: Any, rows: JointMotions, given: Any, shapes: Mapping[str, GeometryShape]
+) -> Source:
     """One geometry of a Pinocchio model."""
     shape = shapes[given.name] if given.name in shapes else read_shape(given.geometry)
     carrier = int(given.parentJoint)

@@ -8,7 +8,7 @@ import numpy as np
 
 from standoff.errors import StandoffError, of_extra
 from standoff.robots.joints import SINGLE, JointKind, Joints
-from standoff.robots.mimics import Followed, read_as
+from standoff.robots.mimics import MimicModel, read_as
 from standoff.robots.tolerances import UNLIMITED
 from standoff.typing import Array, Ints
 
@@ -21,7 +21,7 @@ HINGE, SLIDE, CONTINUOUS = JointKind.HINGE, JointKind.SLIDE, JointKind.CONTINUOU
 GLIDE = JointKind.GLIDE
 
 
-class Row(NamedTuple):
+class JointMotion(NamedTuple):
     """One motion of a joint: its kind, axis, and where its number stands after the joint's first
     in q and v."""
 
@@ -33,15 +33,22 @@ class Row(NamedTuple):
     offset: float = 0.0
 
 
-MOTIONS: dict[str, tuple[Row, ...]] = {
-    **{f"JointModelR{n}": (Row(HINGE, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
-    **{f"JointModelP{n}": (Row(SLIDE, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
-    **{f"JointModelRUB{n}": (Row(CONTINUOUS, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
-    "JointModelSpherical": (Row(JointKind.BALL, 0.0 * X),),
-    "JointModelFreeFlyer": (Row(JointKind.FREE, 0.0 * X),),
-    "JointModelTranslation": tuple(Row(SLIDE, a, k, k) for k, a in enumerate((X, Y, Z))),
-    "JointModelPlanar": (Row(GLIDE, X), Row(GLIDE, Y, 1, 0), Row(CONTINUOUS, Z, 2, 2)),
-    "JointModelSphericalZYX": tuple(Row(HINGE, a, k, k) for k, a in enumerate((Z, Y, X))),
+MOTIONS: dict[str, tuple[JointMotion, ...]] = {
+    **{f"JointModelR{n}": (JointMotion(HINGE, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
+    **{f"JointModelP{n}": (JointMotion(SLIDE, a),) for n, a in zip("XYZ", (X, Y, Z), strict=True)},
+    **{
+        f"JointModelRUB{n}": (JointMotion(CONTINUOUS, a),)
+        for n, a in zip("XYZ", (X, Y, Z), strict=True)
+    },
+    "JointModelSpherical": (JointMotion(JointKind.BALL, 0.0 * X),),
+    "JointModelFreeFlyer": (JointMotion(JointKind.FREE, 0.0 * X),),
+    "JointModelTranslation": tuple(JointMotion(SLIDE, a, k, k) for k, a in enumerate((X, Y, Z))),
+    "JointModelPlanar": (
+        JointMotion(GLIDE, X),
+        JointMotion(GLIDE, Y, 1, 0),
+        JointMotion(CONTINUOUS, Z, 2, 2),
+    ),
+    "JointModelSphericalZYX": tuple(JointMotion(HINGE, a, k, k) for k, a in enumerate((Z, Y, X))),
 }
 """Of each kind of joint without a direction of its own."""
 
@@ -52,7 +59,7 @@ ALONG_AXIS = {
 """Of those with an axis."""
 
 
-class Rows(NamedTuple):
+class JointMotions(NamedTuple):
     """A model's joints.
 
     Attributes
@@ -68,7 +75,7 @@ class Rows(NamedTuple):
     notes: tuple[str, ...]
 
 
-def read_joints(model: Any, what: str, follows: Followed | None = None) -> Rows:
+def read_joints(model: Any, what: str, follows: MimicModel | None = None) -> JointMotions:
     """The tree of a model's joints; ``follows`` says which read the numbers of others.
 
     Raises StandoffError: a joint of a kind that is not known; its name and kind are told.
@@ -76,7 +83,7 @@ def read_joints(model: Any, what: str, follows: Followed | None = None) -> Rows:
     of_joints = np.full(model.njoints, -1)
     names: list[str] = []
     mimics: set[int] = set()
-    rows: list[tuple[Row, int, Array, int, int]] = []
+    rows: list[tuple[JointMotion, int, Array, int, int]] = []
     for j in range(1, model.njoints):
         motions = _motions(model, j, what)
         at_q, at_v = int(model.idx_qs[j]), int(model.idx_vs[j])
@@ -117,10 +124,10 @@ def read_joints(model: Any, what: str, follows: Followed | None = None) -> Rows:
         scalar_first=False,
         mimics=frozenset(mimics),
     )
-    return Rows(joints, of_joints, _notes(joints))
+    return JointMotions(joints, of_joints, _notes(joints))
 
 
-def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
+def _motions(model: Any, j: int, what: str) -> tuple[JointMotion, ...]:
     """What a joint's motions are, from its base."""
     joint = model.joints[j]
     kind = joint.shortname()
@@ -128,9 +135,9 @@ def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
         return MOTIONS[kind]
     if kind in ALONG_AXIS:
         axis = np.array(joint.extract().axis, dtype=float)
-        return (Row(ALONG_AXIS[kind], axis),)
+        return (JointMotion(ALONG_AXIS[kind], axis),)
     if kind == "JointModelRevoluteUnboundedUnaligned":
-        return (Row(CONTINUOUS, _led(model, j, j, 1.0)[1]),)
+        return (JointMotion(CONTINUOUS, _led(model, j, j, 1.0)[1]),)
     if kind == "JointModelMimic":
         return (_mimicking(model, j, what),)
     raise StandoffError(
@@ -141,21 +148,21 @@ def _motions(model: Any, j: int, what: str) -> tuple[Row, ...]:
     )
 
 
-def _of_master(model: Any, pair: tuple[int, int], row: Row, what: str) -> Row:
+def _of_master(model: Any, pair: tuple[int, int], row: JointMotion, what: str) -> JointMotion:
     """The row of a joint that follows another: it reads what that one has in q."""
     names = model.names[pair[0]], model.names[pair[1]]
     kind = read_as(row.kind, int(model.nqs[pair[1]]), row.ratio, names, what)
     return row._replace(kind=kind)
 
 
-def _mimicking(model: Any, j: int, what: str) -> Row:
+def _mimicking(model: Any, j: int, what: str) -> JointMotion:
     """The motion of a joint that mimics another of one number, or of (cos, sin)."""
     joint = model.joints[j].extract()
     ratio, offset, at = float(joint.scaling), float(joint.offset), int(model.idx_qs[j])
     master = next(i for i in range(1, model.njoints) if model.idx_qs[i] == at and model.nqs[i])
     kind, axis, way = _led(model, master, j, (1.0 - offset) / ratio if ratio else 0.0)
     # one that follows by 0 stands where its offset leads it
-    row = Row(kind, axis, 0, 0, ratio, offset if ratio else way)
+    row = JointMotion(kind, axis, 0, 0, ratio, offset if ratio else way)
     return _of_master(model, (j, master), row, what)
 
 

@@ -14,7 +14,7 @@ with of_extra("Pinocchio", "pinocchio"):
     import coal
 
 
-class Shape(NamedTuple):
+class GeometryShape(NamedTuple):
     """A kind, its sizes, and the mesh of one that is.
 
     Attributes
@@ -42,17 +42,17 @@ SIZES: dict[Any, tuple[str, Callable[[Any], tuple[float, ...]]]] = {
 """Coal's half lengths as ours."""
 
 
-def read_shape(geometry: Any) -> Shape:
+def read_shape(geometry: Any) -> GeometryShape:
     """What a geometry of Coal is; a kind by Coal's own name where it is none of ours."""
     for own, (kind, size) in SIZES.items():
         if isinstance(geometry, own):
             swept = float(geometry.getSweptSphereRadius())
-            return Shape(kind, (*(float(x) for x in size(geometry)), swept))
+            return GeometryShape(kind, (*(float(x) for x in size(geometry)), swept))
     if isinstance(geometry, coal.Convex | coal.BVHModelBase):
-        return Shape("mesh", (), lambda: _mesh(geometry))
+        return GeometryShape("mesh", (), lambda: _mesh(geometry))
     if isinstance(geometry, coal.HeightFieldOBBRSS | coal.HeightFieldAABB):
-        return Shape("hfield")
-    return Shape(type(geometry).__name__)
+        return GeometryShape("hfield")
+    return GeometryShape(type(geometry).__name__)
 
 
 def _mesh(geometry: Any) -> tuple[Array, Ints]:

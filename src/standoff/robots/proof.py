@@ -267,7 +267,7 @@ class BoxCounts(NamedTuple):
     queries: int
 
 
-class Boxes(NamedTuple):
+class JointBoxes(NamedTuple):
     """Boxes of configurations.
 
     Attributes
@@ -303,7 +303,7 @@ class BoxProof(KeepsReadOnly, PlainData):
     proven : float
         A lower bound of all pairs' distances in the whole box [length].
     counts : BoxCounts
-    free_boxes, violated_boxes, open_boxes : Boxes
+    free_boxes, violated_boxes, open_boxes : JointBoxes
         The boxes themselves.
     """
 
@@ -317,9 +317,9 @@ class BoxProof(KeepsReadOnly, PlainData):
     witness: Witness | None
     proven: float
     counts: BoxCounts
-    free_boxes: Boxes
-    violated_boxes: Boxes
-    open_boxes: Boxes
+    free_boxes: JointBoxes
+    violated_boxes: JointBoxes
+    open_boxes: JointBoxes
 
     def __bool__(self) -> bool:
         return self.verdict is Verdict.PROVEN

@@ -14,10 +14,10 @@ from standoff.robots.proof import PathProof
 from standoff.robots.shown_robot import ShownRobot
 from standoff.typing import Array
 from standoff.view.motion_panel import Later
-from standoff.view.moving_world import Course
+from standoff.view.moving_world import WorldCourse
 from standoff.view.player import Player
 from standoff.view.served import ServedPage
-from standoff.view.world_panel import Asks, WorldPanel
+from standoff.view.world_panel import WorldPanel, WorldRequests
 from standoff.view.world_stage import WorldStage
 
 STEPS = 1000
@@ -37,7 +37,7 @@ PROOF = (
 )
 
 
-class JointAsks(Asks, Protocol):
+class JointAsks(WorldRequests, Protocol):
     """What a user of the page can ask for."""
 
     def turn(self, number: int, value: float) -> None: ...
@@ -142,7 +142,7 @@ class RobotStage(WorldStage):
         if self.player is None:
             self._stands_at(self.shown.first)
 
-    def _show_frame(self, player: Player[Course]) -> None:
+    def _show_frame(self, player: Player[WorldCourse]) -> None:
         super()._show_frame(player)
         self._stands_at(self.shown.at(float(player.recording.time[player.frame])))
 

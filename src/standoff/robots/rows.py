@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from standoff.read_only import KeepsReadOnly
 from standoff.robots.answer import Flag, RobotAnswer
-from standoff.robots.kinematics import Motion
+from standoff.robots.kinematics import GeometryMotion
 from standoff.robots.tolerances import TURN_LOST
 from standoff.shown_names import hides
 from standoff.tracking.derivatives import Smoothness
@@ -80,7 +80,7 @@ class RobotRows(KeepsReadOnly):
     __slots__ = ("_flags", "_jacobian", "_pairs", "answer", "motion", "mounted", "q", "within")
 
     def __init__(
-        self, answer: WorldAnswer, q: Array, motion: Motion, mounted: Mounted, within: float
+        self, answer: WorldAnswer, q: Array, motion: GeometryMotion, mounted: Mounted, within: float
     ) -> None:
         self.answer, self.q, self.motion, self.mounted = answer, q, motion, mounted
         self.within = within
@@ -214,7 +214,11 @@ class RobotRows(KeepsReadOnly):
 
 
 def rows_by_velocity(
-    normal: Array, points: tuple[Array, Array], signs: Array, motion: Motion, fold: Array | None
+    normal: Array,
+    points: tuple[Array, Array],
+    signs: Array,
+    motion: GeometryMotion,
+    fold: Array | None,
 ) -> Array:
     """(k, nv): the rate of each pair's distance by a unit of each velocity.
 
@@ -229,7 +233,7 @@ def rows_by_velocity(
         Witness points on A and on B.
     signs : (k, ns) array
         1 where a screw moves B alone, -1 where it moves A alone, else 0.
-    motion : Motion
+    motion : GeometryMotion
     fold : (ns, nv) array or None
     """
     # the moment of the normal about the origin is the same at both points

@@ -11,7 +11,7 @@ from standoff.checks.arrays import finite, numbers
 from standoff.checks.numbers import number, positive
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, of_extra
-from standoff.robots.near import Near
+from standoff.robots.near import NearLinks
 from standoff.robots.robot import Robot
 from standoff.robots.rows import RobotRows
 from standoff.robots.tolerances import RATE_LOST
@@ -92,7 +92,7 @@ class SafetyFilter:
         solver: str = "daqp",
     ) -> None:
         self.minimum, self.gain = number(minimum, "minimum"), positive(gain, "gain")
-        self._near = Near(robot, self.minimum, within)
+        self._near = NearLinks(robot, self.minimum, within)
         nv = (robot.nv,)
         self.lower = np.full(nv, -np.inf) if lower is None else numbers(lower, "lower", nv)
         self.upper = np.full(nv, np.inf) if upper is None else numbers(upper, "upper", nv)

@@ -57,7 +57,7 @@ class Source(NamedTuple):
     file_frame: Array | None = None
 
 
-class Made(NamedTuple):
+class GeometryBodies(NamedTuple):
     """Bodies of a model's geometries.
 
     Attributes
@@ -107,7 +107,9 @@ def exact_body(kind: str, size: tuple[float, ...]) -> Body:
     return EXACT_KINDS[kind](*size)
 
 
-def made_geoms(sources: Sequence[Source], meshes: Meshes, skip: Sequence[str], what: str) -> Made:
+def made_geoms(
+    sources: Sequence[Source], meshes: Meshes, skip: Sequence[str], what: str
+) -> GeometryBodies:
     """Bodies for all geometries that collide and are not skipped.
 
     Raises StandoffError: some have no body: all are named, with what to do.
@@ -145,7 +147,7 @@ def made_geoms(sources: Sequence[Source], meshes: Meshes, skip: Sequence[str], w
         np.array([placement for _, _, placement in kept]),
         tuple(body for _, body, _ in kept),
     )
-    return Made(geoms, {k: n for n, (k, _, _) in enumerate(kept)}, tuple(reports))
+    return GeometryBodies(geoms, {k: n for n, (k, _, _) in enumerate(kept)}, tuple(reports))
 
 
 def _made(source: Source, given: Mapping[str, Any]) -> tuple[Shape | Compound, Array, GeomReport]:

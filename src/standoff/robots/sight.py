@@ -22,16 +22,16 @@ from standoff.robots.motion_bounds import (
     least_way_along,
     reaches_of,
 )
-from standoff.robots.motions import WORLD, Frames, motions_of
+from standoff.robots.motions import WORLD, LinkFrames, motions_of
 from standoff.robots.proof import Witness
 from standoff.robots.robot_model import RobotModel
-from standoff.robots.watched import Seen, Watched, watched_of
+from standoff.robots.watched import PlacedCores, Watched, watched_of
 from standoff.typing import Array, Bools, Ints
 from standoff.world import World
 from standoff.world.many_frames import answers_at, are_solids, pieces_placed
 
 
-class Apart(NamedTuple):
+class Separations(NamedTuple):
     """Of k pairs, each at one configuration.
 
     Attributes
@@ -66,7 +66,7 @@ class Middle(NamedTuple):
         No pair of points moves more than this against each other in the box [length].
     """
 
-    seen: tuple[Seen, Seen]
+    seen: tuple[PlacedCores, PlacedCores]
     half: Array
     reaches: Reaches
     way: Array
@@ -109,14 +109,14 @@ class Sight:
         a, b = self.names(pair)
         return links.get(a, a), links.get(b, b)
 
-    def witness(self, pair: int, q: Array, apart: Apart) -> Witness:
+    def witness(self, pair: int, q: Array, apart: Separations) -> Witness:
         """A pair at a configuration, as an answer shows it, of the first of what is known."""
         q = np.array(q)
         q.flags.writeable = False
         numbers = (float(each[0]) for each in apart[:3])
         return Witness(self.names(pair), self.links(pair), q, *numbers)
 
-    def frames(self, q: Array) -> Frames:
+    def frames(self, q: Array) -> LinkFrames:
         """Where the motions' frames are at configurations (m, nq)."""
         return self.watched.motions.frames(q)
 
@@ -143,7 +143,7 @@ class Sight:
         count = motions.size + 1
         return EPS * count * length * (KINEMATICS_ROUNDINGS + PATH_ROUNDINGS * joints)
 
-    def middle(self, pairs: Ints, frames: Frames, at: Ints, ways: Array) -> Middle:
+    def middle(self, pairs: Ints, frames: LinkFrames, at: Ints, ways: Array) -> Middle:
         """Pairs in the middle of boxes: how far each can move."""
         watched = self.watched
         a, b = watched.a[pairs], watched.b[pairs]
@@ -152,7 +152,7 @@ class Sight:
         reaches = reaches_of(watched, pairs, frames, at, ways, seen)
         return Middle(seen, half, reaches, least_way(reaches).bound)
 
-    def by_boxes(self, pairs: Ints, frames: Frames, at: Ints, middle: Middle) -> Apart:
+    def by_boxes(self, pairs: Ints, frames: LinkFrames, at: Ints, middle: Middle) -> Separations:
         """How far apart the pieces' boxes are, along the line of their centres."""
         cores, (a, b) = self.watched.cores, (self.watched.a[pairs], self.watched.b[pairs])
         between = middle.seen[1].centres - middle.seen[0].centres
@@ -169,9 +169,9 @@ class Sight:
             spread = np.abs(np.einsum("ki,kij->kj", normals, seen.axes))
             lower -= np.einsum("kj,kj->k", spread, half)
         every = np.full(len(pairs), np.inf), normals, np.ones(len(pairs), dtype=bool)
-        return Apart(lower, lower, *every)
+        return Separations(lower, lower, *every)
 
-    def ask(self, pairs: Ints, q: Array, frames: Frames, at: Ints) -> Apart:
+    def ask(self, pairs: Ints, q: Array, frames: LinkFrames, at: Ints) -> Separations:
         """Certified distances of pairs, each at one of several configurations; the same pair at the
         same configuration is asked once."""
         keys, first, again = np.unique(pairs * len(q) + at, return_index=True, return_inverse=True)
@@ -183,9 +183,9 @@ class Sight:
         self.queries += len(keys)
         normals = np.nan_to_num(found.normal)
         told = found.distance, found.lower, found.upper, normals, ~self.solid[of_pairs]
-        return Apart._make(each[again] for each in told)
+        return Separations._make(each[again] for each in told)
 
-    def placed(self, q: Array, frames: Frames, k: int) -> Array:
+    def placed(self, q: Array, frames: LinkFrames, k: int) -> Array:
         """Where the pieces are, by the package's own kinematics.
 
         Raises StandoffError: the joints as read place a geom elsewhere: no bound of its motion
@@ -213,14 +213,14 @@ class Sight:
         return placed
 
 
-def closing(middle: Middle, apart: Apart) -> Array:
+def closing(middle: Middle, apart: Separations) -> Array:
     """(k,): how much nearer the pieces can come than in the middle [length]: seen from a link, or,
     where they are apart along a normal, along that normal alone."""
     along: Cut = least_way_along(middle.reaches, apart.normals, middle.seen, middle.half)
     return np.where(apart.along, np.minimum(middle.way, along.bound), middle.way)
 
 
-def gains(middle: Middle, apart: Apart | None, numbers: Ints, most: int) -> Array:
+def gains(middle: Middle, apart: Separations | None, numbers: Ints, most: int) -> Array:
     """(k, most): how much less `closing` is where some motions go half as far [length]; without
     ``apart``, how much less the way is.
 
@@ -230,7 +230,7 @@ def gains(middle: Middle, apart: Apart | None, numbers: Ints, most: int) -> Arra
     Parameters
     ----------
     middle : Middle
-    apart : Apart or None
+    apart : Separations or None
     numbers : (k, n) array of int
         Of each motion of the chains, with which others it is halved: 0 to most - 1, or less than 0.
     most : int
@@ -244,7 +244,7 @@ def gains(middle: Middle, apart: Apart | None, numbers: Ints, most: int) -> Arra
     bound = least_way(all_.reaches).bound
     if apart is not None:
         all_ = all_._replace(way=bound)
-        bound = closing(all_, Apart._make(each[every] for each in apart))
+        bound = closing(all_, Separations._make(each[every] for each in apart))
     of_number = bound.reshape(most + 1, k)
     found: Array = (of_number[most] - of_number[:most]).T
     own = reaches.h * np.minimum(reaches.r_a, reaches.r_b)
@@ -256,7 +256,7 @@ def gains(middle: Middle, apart: Apart | None, numbers: Ints, most: int) -> Arra
 
 def some_of(middle: Middle, which: Any) -> Middle:
     """Some of the pairs."""
-    seen_a, seen_b = (Seen(*(x[which] for x in each)) for each in middle.seen)
+    seen_a, seen_b = (PlacedCores(*(x[which] for x in each)) for each in middle.seen)
     reaches = Reaches(*(x[which] for x in middle.reaches))
     return Middle((seen_a, seen_b), middle.half[:, which], reaches, middle.way[which])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from standoff.robots.kinematics import Motion
+from standoff.robots.kinematics import GeometryMotion
 from standoff.typing import Array
 from standoff.world.state import WorldState
 
@@ -16,9 +16,9 @@ class RobotState(NamedTuple):
     ----------
     q : (nq,) array
     world : WorldState
-    motion : Motion
+    motion : GeometryMotion
     """
 
     q: Array
     world: WorldState
-    motion: Motion
+    motion: GeometryMotion

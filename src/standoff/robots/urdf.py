@@ -15,7 +15,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError, of_extra
 from standoff.robots.joints import Joints
 from standoff.robots.loaded import Loaded
-from standoff.robots.mimics import Followed, followed
+from standoff.robots.mimics import MimicModel, followed
 from standoff.robots.pinocchio import Reading, assembled
 from standoff.robots.pinocchio_shapes import read_shape
 from standoff.robots.report import RIGID
@@ -88,7 +88,7 @@ def load(path: Any, srdf: Any, options: UrdfOptions) -> Loaded:
     return found
 
 
-def _numbered(model: Any, follows: dict[str, tuple[str, float, float]]) -> Followed | None:
+def _numbered(model: Any, follows: dict[str, tuple[str, float, float]]) -> MimicModel | None:
     """The joints that follow others, by their numbers in the model."""
     if not follows:
         return None

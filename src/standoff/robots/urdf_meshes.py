@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Any
 
 from standoff.errors import StandoffError
-from standoff.robots.pinocchio_shapes import Shape
+from standoff.robots.pinocchio_shapes import GeometryShape
 from standoff.robots.report import HULL
 from standoff.robots.shapes import MOST_NAMED, Meshes
 from standoff.robots.urdf_xml import UNUSED
 from standoff.robots.urdf_xml import Collision as Element
 
-Shapes = Mapping[str, Shape]
+Shapes = Mapping[str, GeometryShape]
 """By name: geometries for which others stand."""
 PACKAGE = "package://"
 
@@ -36,7 +36,7 @@ def stand_ins(
     Raises StandoffError: files of meshes that are not there; all are named.
     """
     changed = copy.deepcopy(root)
-    shapes: dict[str, Shape] = {}
+    shapes: dict[str, GeometryShape] = {}
     missing: list[str] = []
     elements = (each.find("geometry") for each in changed.iterfind("link/collision"))
     for element, (name, link, kind, *_) in zip(elements, collisions, strict=True):
@@ -46,7 +46,7 @@ def stand_ins(
             if _found(file, *places) is None:
                 missing.append(f"  {name!r} on link {link!r}: {file}")
         elif kind == "mesh":
-            shapes[name] = Shape(kind)
+            shapes[name] = GeometryShape(kind)
             element.remove(shape)
             element.append(shape.makeelement("sphere", {"radius": "1"}))
     for above in (changed, *changed.iterfind("link"), *changed.iterfind("link/collision")):

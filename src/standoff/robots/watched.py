@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.kernels.world import arrays as W
-from standoff.robots.motions import WORLD, Frames, Motions
+from standoff.robots.motions import WORLD, LinkFrames, Motions
 from standoff.typing import Array, Ints
 from standoff.world.model import Model
 
@@ -46,7 +46,7 @@ class Cores(NamedTuple):
     normals: Array
 
 
-class Seen(NamedTuple):
+class PlacedCores(NamedTuple):
     """Cores in the world, each at one of several configurations.
 
     Attributes
@@ -59,7 +59,7 @@ class Seen(NamedTuple):
     axes: Array
 
 
-class Chains(NamedTuple):
+class LinkChains(NamedTuple):
     """The chains of the pairs of links, filled up to the length of the longest.
 
     Attributes
@@ -85,7 +85,7 @@ class Watched(NamedTuple):
         Pieces of each pair.
     bodies : (n, 2) array of int
         Numbers of the bodies that they belong to, in the world's order.
-    chains : Chains
+    chains : LinkChains
     chain : (n,) array of int
         The chain of each pair.
     length : float
@@ -98,16 +98,16 @@ class Watched(NamedTuple):
     a: Ints
     b: Ints
     bodies: Ints
-    chains: Chains
+    chains: LinkChains
     chain: Ints
     length: float
 
-    def see(self, frames: Frames, at: Ints, pieces: Ints) -> Seen:
+    def see(self, frames: LinkFrames, at: Ints, pieces: Ints) -> PlacedCores:
         """Cores of pieces in the world, each in the frames of one configuration."""
         carrier = self.cores.motions[pieces]
         rotations, origins = frames.rotations[at, carrier], frames.origins[at, carrier]
         centres = origins + turned(rotations, self.cores.centres[pieces])
-        return Seen(centres, rotations @ self.cores.axes[pieces])
+        return PlacedCores(centres, rotations @ self.cores.axes[pieces])
 
 
 def watched_of(world: Model, motions: Motions, carriers: Ints, placements: Array) -> Watched:
@@ -175,7 +175,7 @@ def _pairs(world: Model) -> tuple[Ints, Ints, Ints]:
     return np.stack([i[row], j[row]], axis=1), a, b
 
 
-def _chains(motions: Motions, links: Ints) -> Chains:
+def _chains(motions: Motions, links: Ints) -> LinkChains:
     """Of pairs (link of A, link of B)."""
     ways, frames = [], []
     for a, b in links.tolist():
@@ -192,7 +192,7 @@ def _chains(motions: Motions, links: Ints) -> Chains:
         of_motions[k, : len(way)] = way
         of_frames[k, : len(carried)] = carried
         of_frames[k, len(carried) :] = carried[-1]
-    return Chains(of_motions, of_frames)
+    return LinkChains(of_motions, of_frames)
 
 
 def _carriers(motions: Motions, link: int) -> list[int]:

@@ -21,7 +21,7 @@ from standoff.scene.part_files import (
     from_file,
 )
 from standoff.scene.placements import POSE_KEYS, read_pose
-from standoff.scene.reader import Table, unknown_name
+from standoff.scene.reader import SceneTable, unknown_name
 from standoff.scene.shapes import SHAPES, read_body
 from standoff.wording import printable
 from standoff.world import Compound, compound
@@ -34,7 +34,7 @@ COMPOUND = "compound"
 """The ``shape`` of a body of several pieces."""
 
 
-def read_solid(table: Table, unit: str) -> Shape | Compound:
+def read_solid(table: SceneTable, unit: str) -> Shape | Compound:
     """Return what a ``[bodies.NAME]`` table describes.
 
     Raises SceneError as of `read_body` and `read_file_body`; a compound without pieces, or planar
@@ -42,7 +42,7 @@ def read_solid(table: Table, unit: str) -> Shape | Compound:
 
     Parameters
     ----------
-    table : Table
+    table : SceneTable
         Of one convex shape, or of a part of a file, with ``body``, or with ``shape = "compound"``
         and a table ``pieces``.
     unit : str
@@ -63,7 +63,7 @@ def read_solid(table: Table, unit: str) -> Shape | Compound:
     return pieces.build(lambda: compound(made))
 
 
-def _piece(table: Table, unit: str) -> tuple[Shape, Pose]:
+def _piece(table: SceneTable, unit: str) -> tuple[Shape, Pose]:
     """A shape with the keys of a pose beside its own: of the piece in the compound's frame."""
     if "body" in table:
         part = read_file_body(table, unit, POSE_KEYS)
@@ -96,7 +96,7 @@ KEPT = ".json"
 """Ending of the files of ``so.solids.save_boundary``."""
 
 
-def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromFile:
+def read_file_body(table: SceneTable, unit: str, beside: Sequence[str] = ()) -> FromFile:
     """Return the part that a table with ``body`` names.
 
     Raises SceneError: a missing file, one of another kind or that is refused, a unit that no file
@@ -104,7 +104,7 @@ def read_file_body(table: Table, unit: str, beside: Sequence[str] = ()) -> FromF
 
     Parameters
     ----------
-    table : Table
+    table : SceneTable
         With ``body``, and optionally ``part``, ``heal``, ``tolerance``, ``hull`` and ``pieces``.
     unit : str
         The scene's label of lengths.
@@ -156,7 +156,7 @@ def _kept(path: Path) -> FromFile:
     return from_file(path.stem, open_boundary(path), np.eye(4))
 
 
-def _chosen(table: Table, parts: FileParts) -> FromFile:
+def _chosen(table: SceneTable, parts: FileParts) -> FromFile:
     """The part that is named, or the only one."""
     found = parts.found
     if "part" in table:

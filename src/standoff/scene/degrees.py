@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 
 ENDING = "_degrees"
 
@@ -16,14 +16,16 @@ def with_degrees(keys: Iterable[str]) -> list[str]:
     return [name for key in keys for name in (key, key + ENDING)]
 
 
-def in_radians(table: Table, numbers: Iterable[str] = (), vectors: Iterable[str] = ()) -> Table:
+def in_radians(
+    table: SceneTable, numbers: Iterable[str] = (), vectors: Iterable[str] = ()
+) -> SceneTable:
     """Return the table with what it says in degrees also under the keys in radians.
 
     Raises SceneError: at an angle that is given both ways, or that is not a finite number.
 
     Parameters
     ----------
-    table : Table
+    table : SceneTable
     numbers, vectors : iterable of str
         Keys in radians, or radians per second, of one number and of three.
     """
@@ -37,7 +39,7 @@ def in_radians(table: Table, numbers: Iterable[str] = (), vectors: Iterable[str]
     return table.replaced(found) if found else table
 
 
-def _given(table: Table, key: str) -> bool:
+def _given(table: SceneTable, key: str) -> bool:
     """Is an angle given in degrees?"""
     if key + ENDING in table:
         table.only_one((key, key + ENDING))

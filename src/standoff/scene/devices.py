@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from standoff.scene.motions import read_motion
 from standoff.scene.placements import read_pose
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.simulation.coupler import VirtualCoupler
 from standoff.simulation.device import DeviceLimits
 from standoff.simulation.disturbances import Disturbances
@@ -57,7 +57,7 @@ class Coupled(NamedTuple):
     device: SimulatedDevice
 
 
-def read_coupled(top: Table, names: list[str], period: float | None = None) -> Coupled | None:
+def read_coupled(top: SceneTable, names: list[str], period: float | None = None) -> Coupled | None:
     """Return what ``[coupler]`` and ``[device]`` describe; None where there is neither.
 
     Raises SceneError: one of the two without the other, an unknown key, or a value that what it
@@ -65,7 +65,7 @@ def read_coupled(top: Table, names: list[str], period: float | None = None) -> C
 
     Parameters
     ----------
-    top : Table
+    top : SceneTable
         The file.
     names : list of str
         Of the free bodies.
@@ -94,13 +94,13 @@ def read_coupled(top: Table, names: list[str], period: float | None = None) -> C
     return Coupled(coupler, tool, device)
 
 
-def _controller(table: Table) -> PassivityController:
+def _controller(table: SceneTable) -> PassivityController:
     table.expect(*CONTROLLER_KEYS)
     given = {name: table.not_negative(name, 0.0) for name in CONTROLLER_KEYS}
     return table.build(lambda: PassivityController(**given))
 
 
-def _device(table: Table) -> SimulatedDevice:
+def _device(table: SceneTable) -> SimulatedDevice:
     table.expect(*DEVICE_KEYS)
     mechanism = table.build(lambda: Mechanism(**_numbers(table, MASSES, ("mass", "damping"))))
     period = table.positive("period", example="period = 1e-3")
@@ -133,7 +133,7 @@ def _device(table: Table) -> SimulatedDevice:
     )
 
 
-def _arm(table: Table) -> HumanArm:
+def _arm(table: SceneTable) -> HumanArm:
     """A name, or a table of numbers; a relaxed arm if nothing is said."""
     if "arm" not in table:
         return HumanArm.relaxed()
@@ -145,7 +145,7 @@ def _arm(table: Table) -> HumanArm:
     return numbers.build(lambda: HumanArm(**given))
 
 
-def _disturbances(table: Table) -> Disturbances:
+def _disturbances(table: SceneTable) -> Disturbances:
     table.expect("script", "drop_out", "malformed", "seed")
     script: dict[int, str] = {}
     if "script" in table:
@@ -158,13 +158,13 @@ def _disturbances(table: Table) -> Disturbances:
     return table.build(lambda: Disturbances(script=script, seed=_whole(table, "seed"), **chances))
 
 
-def _whole(table: Table, key: str) -> int:
+def _whole(table: SceneTable, key: str) -> int:
     """A whole number from 0 on, 0 if nothing is said."""
     return table.count(key, 1) if key in table and table.number(key) != 0.0 else 0
 
 
 def _numbers(
-    table: Table, names: tuple[str, ...], needed: tuple[str, ...] = ()
+    table: SceneTable, names: tuple[str, ...], needed: tuple[str, ...] = ()
 ) -> dict[str, float]:
     """The numbers that are given, zero or above; those that are needed must be."""
     return {name: table.not_negative(name) for name in names if name in table or name in needed}

@@ -14,7 +14,7 @@ from standoff.scene.compounds import read_solid
 from standoff.scene.errors import SceneError
 from standoff.scene.files import text_of, toml_tables
 from standoff.scene.placements import read_pose
-from standoff.scene.reader import Table, Value, shown, unknown_name
+from standoff.scene.reader import SceneTable, Value, shown, unknown_name
 from standoff.wording import printable
 from standoff.world import Compound
 from standoff.world.shapes import Shape
@@ -45,7 +45,7 @@ class FileContent:
         A line for the reader; the file's name where the scene has none.
     length_unit : str
         Label of lengths; no number of the file is converted, lengths of CAD files are.
-    top : Table
+    top : SceneTable
         What else is read is read from it.
     bodies : mapping of str to Body, Solid or Compound
     placements : mapping of str to Pose
@@ -58,13 +58,13 @@ class FileContent:
     text: str
     title: str
     length_unit: str
-    top: Table
+    top: SceneTable
     bodies: Mapping[str, Shape | Compound]
     placements: Mapping[str, Pose]
-    motions: Mapping[str, Table]
+    motions: Mapping[str, SceneTable]
 
 
-def of_a_simulation(top: Table | Mapping[str, object]) -> str | None:
+def of_a_simulation(top: SceneTable | Mapping[str, object]) -> str | None:
     """Return the key that makes a file the scene of a simulation; None of another's."""
     if any(key in top for key in ("pair", "pairs", "world")):
         return None
@@ -84,7 +84,9 @@ def is_simulation(file: str | os.PathLike[str]) -> bool:
 
 
 def read_content(
-    file: str | os.PathLike[str], keys: Sequence[str], refuse_other_kind: Callable[[Table], None]
+    file: str | os.PathLike[str],
+    keys: Sequence[str],
+    refuse_other_kind: Callable[[SceneTable], None],
 ) -> FileContent:
     """Read a scene's file.
 
@@ -106,7 +108,7 @@ def read_content(
         content = toml_tables(text)
     except SceneError as error:
         raise error.found_in(path) from error
-    top = Table(content, file=path)
+    top = SceneTable(content, file=path)
     _check_version(top)
     refuse_other_kind(top)
     top.expect(*KEYS, *keys)
@@ -126,7 +128,7 @@ def read_content(
     )
 
 
-def _check_version(top: Table) -> None:
+def _check_version(top: SceneTable) -> None:
     """Refuse a scene of another version of the format."""
     version = top.required("version", f"version = {VERSION}")
     if type(version) is not int or version != VERSION:
@@ -138,9 +140,9 @@ def _check_version(top: Table) -> None:
 
 
 def named(
-    top: Table,
+    top: SceneTable,
     key: str,
-    read: Callable[[Table], Value],
+    read: Callable[[SceneTable], Value],
     bodies: Mapping[str, Shape | Compound] | None = None,
 ) -> dict[str, Value]:
     """Return what the tables ``[key.NAME]`` describe; with `bodies`, each NAME must be one."""

@@ -13,7 +13,7 @@ from typing import Any
 from standoff.checks.names import nearest
 from standoff.nesting import TOML, text_problem, value_problem
 from standoff.scene.errors import SceneError
-from standoff.scene.reader import Table, shown
+from standoff.scene.reader import SceneTable, shown
 
 NEAREST_FILE_CUTOFF = 0.8
 """Least likeness (difflib ratio, 0 to 1) of a file name that is suggested for another: file names
@@ -60,7 +60,7 @@ def _missing(path: Path, name: str, folder: str) -> str:
     return f"no file {shown(name)}; paths are relative to {folder}"
 
 
-def existing_file(table: Table, key: str, example: str) -> Path:
+def existing_file(table: SceneTable, key: str, example: str) -> Path:
     """Return the file that `key` names, relative to the scene file.
 
     Raises SceneError if the key or the file is missing; `example` is the line to add.

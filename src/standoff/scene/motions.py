@@ -28,7 +28,7 @@ from standoff.motion import (
 from standoff.scene.degrees import ENDING, in_radians, with_degrees
 from standoff.scene.files import existing_file
 from standoff.scene.placements import in_space, read_pose
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.typing import Array
 
 FILE_START = "file"
@@ -66,7 +66,7 @@ class MotionKind(NamedTuple):
 
     keys: tuple[str, ...]
     placed: bool
-    read: Callable[[Table, Pose], Motion]
+    read: Callable[[SceneTable, Pose], Motion]
 
 
 def at_rest(placement: Pose) -> Motion:
@@ -78,7 +78,7 @@ def _formula(kind: str, path: Path) -> Motion:
     return Motion(path, kind, np.empty(0))
 
 
-def _twist(table: Table, placement: Pose) -> Motion:
+def _twist(table: SceneTable, placement: Pose) -> Motion:
     if "linear" not in table and "angular" not in table:
         raise table.error("a twist needs 'linear' or 'angular'; add linear = [0.1, 0.0, 0.0]")
     linear = in_space(table, "linear") if "linear" in table else np.zeros(3)
@@ -88,14 +88,14 @@ def _twist(table: Table, placement: Pose) -> Motion:
     return _formula("twist", ConstantTwist(placement, twist))
 
 
-def _screw(table: Table, placement: Pose) -> Motion:
+def _screw(table: SceneTable, placement: Pose) -> Motion:
     axis = table.vector("axis", 3)
     point = in_space(table, "point") if "point" in table else np.zeros(3)
     rate, pitch = table.number("angular_rate"), table.number("pitch", 0.0)
     return _formula("screw", table.build(lambda: Screw(placement, axis, point, rate, pitch)))
 
 
-def _helix(table: Table, _: Pose) -> Motion:
+def _helix(table: SceneTable, _: Pose) -> Motion:
     radius, pitch = table.positive("radius"), table.number("pitch")
     rate, phase = table.number("rate"), table.number("phase", 0.0)
     centre = in_space(table, "centre") if "centre" in table else np.zeros(3)
@@ -105,7 +105,7 @@ def _helix(table: Table, _: Pose) -> Motion:
     return _formula("helix", path)
 
 
-def _spiral(table: Table, _: Pose) -> Motion:
+def _spiral(table: SceneTable, _: Pose) -> Motion:
     radius, growth = table.not_negative("radius"), table.number("growth")
     rate, phase = table.number("rate"), table.number("phase", 0.0)
     centre = table.vector("centre", 2) if "centre" in table else np.zeros(2)
@@ -114,7 +114,7 @@ def _spiral(table: Table, _: Pose) -> Motion:
     return _formula("spiral", path)
 
 
-def _samples(table: Table, _: Pose) -> Motion:
+def _samples(table: SceneTable, _: Pose) -> Motion:
     file = existing_file(table, "file", 'file = "hand.tum"')
     samples: PoseSamples = table.build(lambda: read_pose_samples(file), "file")
     start = table.number_or_word("start", FILE_START, 0.0)
@@ -125,7 +125,7 @@ def _samples(table: Table, _: Pose) -> Motion:
     return Motion(shifted, "samples", shifted.times, file, samples.repaired)
 
 
-def _orientation(table: Table) -> Orientation:
+def _orientation(table: SceneTable) -> Orientation:
     return cast(Orientation, table.choice("orientation", get_args(Orientation), "fixed"))
 
 
@@ -145,7 +145,7 @@ MOTIONS: Mapping[str, MotionKind] = {
 """Every kind of motion that a scene may name."""
 
 
-def read_motion(table: Table, placement: Pose | None) -> Motion:
+def read_motion(table: SceneTable, placement: Pose | None) -> Motion:
     """Return the motion that a ``[motions.NAME]`` table describes.
 
     Raises SceneError: at an unknown kind or key, a value that the motion refuses, a file that is
@@ -154,7 +154,7 @@ def read_motion(table: Table, placement: Pose | None) -> Motion:
 
     Parameters
     ----------
-    table : Table
+    table : SceneTable
         With ``kind``, the kind's own keys, and optionally ``offset`` and ``spin``.
     placement : Pose or None
         The body's own placement, if the scene gives one.

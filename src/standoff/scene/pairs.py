@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from standoff.scene.reader import Table, shown
+from standoff.scene.reader import SceneTable, shown
 from standoff.scene.settings import TrackSettings, read_settings
 
 PLAIN = "-_"
@@ -13,7 +13,7 @@ PLAIN = "-_"
 
 
 @dataclass(frozen=True)
-class Pair:
+class PairOfScene:
     """Two bodies that are tracked together.
 
     Attributes
@@ -33,8 +33,8 @@ class Pair:
 
 
 def read_pairs(
-    top: Table, bodies: Sequence[str], compounds: Collection[str] = ()
-) -> tuple[Pair, ...]:
+    top: SceneTable, bodies: Sequence[str], compounds: Collection[str] = ()
+) -> tuple[PairOfScene, ...]:
     """Return the pairs of a scene, at least one unless it has a world.
 
     Raises SceneError if neither or both are given, a body is unknown, a compound or paired with
@@ -42,7 +42,7 @@ def read_pairs(
 
     Parameters
     ----------
-    top : Table
+    top : SceneTable
         The scene's top table, with ``pair`` or ``pairs``, or ``world``, and ``track``.
     bodies : sequence of str
         Names of the bodies.
@@ -56,19 +56,21 @@ def read_pairs(
         table = top.table("pair")
         table.expect("a", "b")
         a, b = _bodies(table, bodies, compounds)
-        return (Pair("pair", a, b, read_settings(*track)),)
+        return (PairOfScene("pair", a, b, read_settings(*track)),)
     if "pair" in top:
         raise top.error("is given together with [[pairs]]; write it as another [[pairs]]", "pair")
-    pairs: list[Pair] = []
+    pairs: list[PairOfScene] = []
     for table in top.tables("pairs"):
         settings = read_settings(table, *track, beside=("name", "a", "b"))
         a, b = _bodies(table, bodies, compounds)
         name = _name(table, f"{a}-{b}", pairs)
-        pairs.append(Pair(name, a, b, settings))
+        pairs.append(PairOfScene(name, a, b, settings))
     return tuple(pairs)
 
 
-def _bodies(table: Table, bodies: Sequence[str], compounds: Collection[str]) -> tuple[str, str]:
+def _bodies(
+    table: SceneTable, bodies: Sequence[str], compounds: Collection[str]
+) -> tuple[str, str]:
     a, b = (table.choice(key, bodies, noun="body") for key in ("a", "b"))
     for key, name in (("a", a), ("b", b)):
         if name in compounds:
@@ -82,7 +84,7 @@ def _bodies(table: Table, bodies: Sequence[str], compounds: Collection[str]) -> 
     return a, b
 
 
-def _name(table: Table, usual: str, before: Sequence[Pair]) -> str:
+def _name(table: SceneTable, usual: str, before: Sequence[PairOfScene]) -> str:
     name = table.text("name", usual)
     if not all(letter.isalnum() or letter in PLAIN for letter in name):
         raise table.error(

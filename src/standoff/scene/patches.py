@@ -11,7 +11,7 @@ from standoff.geometry import BezierPatch, FormulaSurface, NurbsSurface, Surface
 from standoff.nesting import JSON, text_problem
 from standoff.scene.errors import SceneError
 from standoff.scene.files import beyond_python, existing_file
-from standoff.scene.reader import Table, shown
+from standoff.scene.reader import SceneTable, shown
 from standoff.typing import Array
 
 FORMAT = "standoff-patches"
@@ -23,29 +23,29 @@ class PatchKind(NamedTuple):
     """One kind of patch: its keys, and what reads them."""
 
     keys: tuple[str, ...]
-    read: Callable[[Table], Surface]
+    read: Callable[[SceneTable], Surface]
 
 
-def _nurbs(table: Table) -> Surface:
+def _nurbs(table: SceneTable) -> Surface:
     points, weights = _points(table), _weights(table)
     knots_u, knots_v = table.numbers("knots_u"), table.numbers("knots_v")
     return table.build(lambda: NurbsSurface(points, knots_u, knots_v, weights))
 
 
-def _bezier(table: Table) -> Surface:
+def _bezier(table: SceneTable) -> Surface:
     points, weights = _points(table), _weights(table)
     return table.build(lambda: BezierPatch(points, weights))
 
 
-def _points(table: Table) -> Array:
+def _points(table: SceneTable) -> Array:
     return table.net("control_points", 3)
 
 
-def _weights(table: Table) -> Array | None:
+def _weights(table: SceneTable) -> Array | None:
     return table.net("weights", None) if "weights" in table else None
 
 
-def _formula(table: Table) -> Surface:
+def _formula(table: SceneTable) -> Surface:
     x, y, z = (table.formula(key) for key in ("x", "y", "z"))
     domain = table.vector("domain", 4, example="domain = [0.0, 1.0, 0.0, 1.0]")
     parameters = table.named_numbers("parameters")
@@ -60,7 +60,7 @@ PATCHES: Mapping[str, PatchKind] = {
 """Every kind of patch that a body may be sewn of."""
 
 
-def read_patches(table: Table) -> list[Surface]:
+def read_patches(table: SceneTable) -> list[Surface]:
     """Return the patches of a body, from its own tables or from the file that it names.
 
     Raises SceneError: at an unknown kind or key, a value that the patch refuses, or a file that is
@@ -73,13 +73,13 @@ def read_patches(table: Table) -> list[Surface]:
     return [_patch(entry) for entry in table.tables("patches")]
 
 
-def _patch(table: Table) -> Surface:
+def _patch(table: SceneTable) -> Surface:
     kind = PATCHES[table.choice("kind", list(PATCHES), "nurbs")]
     table.expect("kind", *kind.keys)
     return kind.read(table)
 
 
-def _of_file(file: Path) -> Table:
+def _of_file(file: Path) -> SceneTable:
     """The checked top of a JSON file of patches."""
     try:
         text = file.read_bytes().decode("utf-8-sig")
@@ -105,7 +105,7 @@ def _of_file(file: Path) -> Table:
         raise SceneError(beyond_python(text, error), file=file) from error
     if not isinstance(content, dict):
         raise SceneError(f"must be an object in braces, got {shown(content)}", file=file)
-    top = Table(content, file=file, json=True)
+    top = SceneTable(content, file=file, json=True)
     if top.text("format") != FORMAT:
         raise top.error(
             f"is {shown(top.text('format'))}; a file of patches says '{FORMAT}'", "format"

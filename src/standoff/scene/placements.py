@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.motion import Pose
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.typing import Array
 
 ORIENTATIONS = (
@@ -18,14 +18,14 @@ POSE_KEYS = ("position", *ORIENTATIONS)
 """Every key of a pose."""
 
 
-def read_pose(table: Table) -> Pose:
+def read_pose(table: SceneTable) -> Pose:
     """Return the pose that a table describes, the identity where nothing is said.
 
     Raises SceneError: at an unknown key, two orientations, or one that is not a rotation.
 
     Parameters
     ----------
-    table : Table
+    table : SceneTable
         With optionally ``position`` and one of `ORIENTATIONS`.
     """
     table.expect(*POSE_KEYS)
@@ -36,13 +36,13 @@ def read_pose(table: Table) -> Pose:
     return table.build(lambda: _oriented(table, given, position), given)
 
 
-def in_space(table: Table, key: str) -> Array:
+def in_space(table: SceneTable, key: str) -> Array:
     """Return a vector of three numbers; two lie in the plane z = 0."""
     vector = table.vector(key, (2, 3))
     return np.append(vector, 0.0) if len(vector) == 2 else vector
 
 
-def _oriented(table: Table, given: str, position: Array) -> Pose:
+def _oriented(table: SceneTable, given: str, position: Array) -> Pose:
     if given == "quaternion_wxyz":
         return Pose.from_wxyz(table.vector(given, 4), position)
     if given == "quaternion_xyzw":
@@ -58,7 +58,7 @@ def _oriented(table: Table, given: str, position: Array) -> Pose:
     return _from_matrix(table, position)
 
 
-def _from_matrix(table: Table, position: Array) -> Pose:
+def _from_matrix(table: SceneTable, position: Array) -> Pose:
     matrix = table.matrix("matrix", ((3, 3), (4, 4)))
     if matrix.shape == (3, 3):
         return Pose(matrix, position)

@@ -1,6 +1,6 @@
 """Strict reading of TOML tables: every value checked, every key accounted for.
 
-A `Table` knows its file and its dotted key path, so that each complaint names the place.
+A `SceneTable` knows its file and its dotted key path, so that each complaint names the place.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def unknown_name(name: str, known: Iterable[str], noun: str) -> str:
     return f"unknown {noun} {shown(name)}; known here: {one_of(names)}"
 
 
-class Table:
+class SceneTable:
     """One table of a scene file, read key by key.
 
     Parameters
@@ -75,15 +75,15 @@ class Table:
         """Return the keys in file order, for tables whose keys are the user's own names."""
         return list(self._content)
 
-    def only(self, keys: Iterable[str]) -> Table:
+    def only(self, keys: Iterable[str]) -> SceneTable:
         """Return the same table with none but these of its keys."""
         content = {key: self._content[key] for key in keys if key in self._content}
-        return Table(content, file=self.file, path=self.path, json=self._json)
+        return SceneTable(content, file=self.file, path=self.path, json=self._json)
 
-    def replaced(self, over: Mapping[str, object]) -> Table:
+    def replaced(self, over: Mapping[str, object]) -> SceneTable:
         """Return the same table with other values in place of its own."""
         content = {**self._content, **over}
-        return Table(content, file=self.file, path=self.path, json=self._json)
+        return SceneTable(content, file=self.file, path=self.path, json=self._json)
 
     def error(self, problem: str, key: str | None = None) -> SceneError:
         """Return the error about `key` of this table, or about the table itself."""
@@ -309,12 +309,12 @@ class Table:
             raise self.error(f"every number must be above zero, got {vector.tolist()}", key)
         return vector
 
-    def table(self, key: str, example: str = "") -> Table:
+    def table(self, key: str, example: str = "") -> SceneTable:
         """Return the table under `key`."""
         value = self.required(key, example or f"[{self._below(key)}]")
         return self._table(value, key)
 
-    def tables(self, key: str) -> list[Table]:
+    def tables(self, key: str) -> list[SceneTable]:
         """Return the array of tables under `key`, at least one."""
         values = self._list(self.required(key, f"[[{self._below(key)}]]"), key)
         if not values:
@@ -330,13 +330,13 @@ class Table:
             raise self.error(f"must be a list in square brackets, got {shown(value)}", key)
         return value
 
-    def _table(self, value: object, key: str) -> Table:
+    def _table(self, value: object, key: str) -> SceneTable:
         if not isinstance(value, dict):
             wanted = f"a table, written [{self._below(key)}]"
             if self._json:
                 wanted = "an object in braces"
             raise self.error(f"must be {wanted}, got {shown(value)}", key)
-        return Table(value, file=self.file, path=self._below(key), json=self._json)
+        return SceneTable(value, file=self.file, path=self._below(key), json=self._json)
 
     def _vector(
         self, value: object, key: str, lengths: tuple[int, ...], noun: str = "a list of"

@@ -16,8 +16,8 @@ from standoff.scene.errors import SceneError
 from standoff.scene.file_content import PAIR_KEYS, FileContent, of_a_simulation, read_content
 from standoff.scene.frames import check_instant, frame_times, start_time, time_window
 from standoff.scene.motions import Motion, at_rest, read_motion
-from standoff.scene.pairs import Pair, read_pairs
-from standoff.scene.reader import Table, shown, unknown_name
+from standoff.scene.pairs import PairOfScene, read_pairs
+from standoff.scene.reader import SceneTable, shown, unknown_name
 from standoff.scene.settings import DEFAULT_STEP, TrackSettings, read_settings
 from standoff.scene.worlds import WorldRules, made_world, read_world
 from standoff.typing import Array
@@ -45,9 +45,9 @@ class Scene:
     bodies : mapping of str to Body, Solid or Compound
     motions : mapping of str to Motion
         One for each body; bodies at rest have the kind ``fixed``.
-    pairs : tuple of Pair
+    pairs : tuple of PairOfScene
         In the file's order; their names differ. None only where there is a ``[world]``.
-    seen : Pair or None
+    seen : PairOfScene or None
         The selected pair; `load_scene` selects the first, if there is one.
     track : TrackSettings
         Those of ``[track]``.
@@ -61,13 +61,13 @@ class Scene:
     length_unit: str
     bodies: Mapping[str, Shape | Compound]
     motions: Mapping[str, Motion]
-    pairs: tuple[Pair, ...]
-    seen: Pair | None
+    pairs: tuple[PairOfScene, ...]
+    seen: PairOfScene | None
     track: TrackSettings = field(default_factory=TrackSettings)
     rules: WorldRules | None = None
 
     @property
-    def selected(self) -> Pair:
+    def selected(self) -> PairOfScene:
         """The pair that the properties below refer to.
 
         Raises SceneError if the scene has a world and no pair.
@@ -270,14 +270,14 @@ def load_scene(file: str | os.PathLike[str]) -> Scene:
     )
 
 
-def _track(top: Table, pairs: tuple[Pair, ...]) -> TrackSettings:
+def _track(top: SceneTable, pairs: tuple[PairOfScene, ...]) -> TrackSettings:
     """Settings of the world: what the pairs of a scene without one override is not read here."""
     if "world" not in top:
         return pairs[0].settings
     return read_settings(*((top.table("track"),) if "track" in top else ()))
 
 
-def _refuse_simulation(top: Table) -> None:
+def _refuse_simulation(top: SceneTable) -> None:
     """Name the command for a file of the other kind, if that is what it is."""
     found = of_a_simulation(top)
     if found is not None:

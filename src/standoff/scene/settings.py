@@ -8,7 +8,7 @@ from typing import Any
 
 from standoff.checks.names import one_of
 from standoff.scene.errors import SceneError
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.tracking.feedback import Feedback, GainMatrix
 from standoff.tracking.feedback_facts import KINDS
 from standoff.tracking.law_options import (
@@ -73,7 +73,7 @@ class TrackSettings:
             Keys and values of a ``[track]`` table. Another ``law`` takes over the options that it
             has too; a gain takes the place of the feedback, and a feedback that of the gain.
         """
-        table = Table({name: value for name, value in given.items() if value is not None})
+        table = SceneTable({name: value for name, value in given.items() if value is not None})
         return read_settings(table, usual=self)
 
     def facts(self) -> dict[str, Any]:
@@ -82,7 +82,7 @@ class TrackSettings:
 
 
 def read_settings(
-    *tables: Table, usual: TrackSettings | None = None, beside: Sequence[str] = ()
+    *tables: SceneTable, usual: TrackSettings | None = None, beside: Sequence[str] = ()
 ) -> TrackSettings:
     """Return the settings that a ``[track]`` table describes, or a pair's own table over it.
 
@@ -108,7 +108,7 @@ def read_settings(
     return TrackSettings(_law(tables, usual.law), **others)
 
 
-def _times(table: Table) -> dict[str, Any]:
+def _times(table: SceneTable) -> dict[str, Any]:
     found: dict[str, Any] = {}
     if "step" in table:
         word = table.number_or_word("step", SAMPLES) is None
@@ -120,11 +120,11 @@ def _times(table: Table) -> dict[str, Any]:
     return found
 
 
-def _of_solids(table: Table) -> dict[str, Any]:
+def _of_solids(table: SceneTable) -> dict[str, Any]:
     return {name: table.positive(name) for name in OF_SOLIDS if name in table}
 
 
-def _law(tables: Sequence[Table], usual: Law) -> Law:
+def _law(tables: Sequence[SceneTable], usual: Law) -> Law:
     """The law that the first table to name one names, with the options of all that it has.
 
     Options of other laws are refused, but not those below a table that puts its law in place.
@@ -149,7 +149,7 @@ def _law(tables: Sequence[Table], usual: Law) -> Law:
     return _made(kind, found, tables)
 
 
-def _made(kind: type[Law], options: dict[str, Any], tables: Sequence[Table]) -> Law:
+def _made(kind: type[Law], options: dict[str, Any], tables: Sequence[SceneTable]) -> Law:
     """The law; what does not go together is reported for the first table that says it."""
     try:
         return kind(**options)
@@ -161,7 +161,7 @@ def _made(kind: type[Law], options: dict[str, Any], tables: Sequence[Table]) -> 
         raise SceneError(str(error), key=error.options[0]) from error
 
 
-def _value(table: Table, option: Option) -> Any:
+def _value(table: SceneTable, option: Option) -> Any:
     """What a table says of an option; its law checks it once more."""
     name = option.name
     match option.kind:
@@ -177,7 +177,7 @@ def _value(table: Table, option: Option) -> Any:
             return read_feedback(table.table(name))
 
 
-def _not_of(law: type[Law], table: Table, name: str) -> SceneError:
+def _not_of(law: type[Law], table: SceneTable, name: str) -> SceneError:
     others = one_of(other.name for other in laws_with(name))
     fix = f"leave it out, or take law = {others}"
     return table.error(f"is an option of the law {others}, and law is '{law.name}': {fix}", name)
@@ -189,7 +189,7 @@ ERRORS = 4
 """Projection errors of two faces, and so gains of a matrix's diagonal: of (u, v) and (r, s)."""
 
 
-def read_feedback(table: Table) -> Feedback:
+def read_feedback(table: SceneTable) -> Feedback:
     """Return the feedback that a table describes: its ``kind``, and its class's fields as keys.
 
     Raises SceneError: at an unknown kind or key, a number that is missing or not above zero, and
@@ -208,7 +208,7 @@ def read_feedback(table: Table) -> Feedback:
     return table.build(lambda: kind(**numbers))
 
 
-def _gains(table: Table) -> Any:
+def _gains(table: SceneTable) -> Any:
     value = table.required("gains", "gains = [100.0, 100.0, 100.0, 100.0]")
     if isinstance(value, list) and any(isinstance(row, list) for row in value):
         return table.matrix("gains", [(ERRORS, ERRORS)])

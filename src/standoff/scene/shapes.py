@@ -12,7 +12,7 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.geometry import ConicArc, Curve, FormulaCurve, Line, NurbsCurve, RationalBezier
 from standoff.scene.patches import read_patches
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.typing import Array
 
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -23,18 +23,18 @@ class ShapeKind(NamedTuple):
     """One shape: its keys beside `rounding`, and what reads them."""
 
     keys: tuple[str, ...]
-    read: Callable[[Table], Body]
+    read: Callable[[SceneTable], Body]
 
 
-def _rounding(table: Table) -> float:
+def _rounding(table: SceneTable) -> float:
     return table.not_negative("rounding", 0.0)
 
 
-def _point(table: Table) -> Body:
+def _point(table: SceneTable) -> Body:
     return shapes.point(rounding=_rounding(table))
 
 
-def _segment(table: Table) -> Body:
+def _segment(table: SceneTable) -> Body:
     rounding = _rounding(table)
     if "length" in table:
         table.only_one(("length", "start"))
@@ -45,90 +45,90 @@ def _segment(table: Table) -> Body:
     return shapes.segment(start=start, end=end, rounding=rounding)
 
 
-def _sphere(table: Table) -> Body:
+def _sphere(table: SceneTable) -> Body:
     return shapes.sphere(table.not_negative("radius"), rounding=_rounding(table))
 
 
-def _ellipsoid(table: Table) -> Body:
+def _ellipsoid(table: SceneTable) -> Body:
     semi_axes = table.positive_vector("semi_axes", 3)
     return shapes.ellipsoid(semi_axes=semi_axes, rounding=_rounding(table))
 
 
-def _capsule(table: Table) -> Body:
+def _capsule(table: SceneTable) -> Body:
     radius, length = table.not_negative("radius"), table.not_negative("length")
     return shapes.capsule(radius, length, rounding=_rounding(table))
 
 
-def _cylinder(table: Table) -> Body:
+def _cylinder(table: SceneTable) -> Body:
     radius, height = table.positive("radius"), table.positive("height")
     return shapes.cylinder(radius, height, rounding=_rounding(table))
 
 
-def _cone(table: Table) -> Body:
+def _cone(table: SceneTable) -> Body:
     radius, height = table.positive("radius"), table.positive("height")
     return shapes.cone(radius, height, rounding=_rounding(table))
 
 
-def _box(table: Table) -> Body:
+def _box(table: SceneTable) -> Body:
     return shapes.box(size=table.positive_vector("size", 3), rounding=_rounding(table))
 
 
-def _polygon(table: Table) -> Body:
+def _polygon(table: SceneTable) -> Body:
     vertices = table.points("vertices", 3, at_least=3)
     return shapes.polygon(vertices, rounding=_rounding(table))
 
 
-def _polytope(table: Table) -> Body:
+def _polytope(table: SceneTable) -> Body:
     vertices = table.points("vertices", 3, at_least=4)
     return shapes.polytope(vertices, rounding=_rounding(table))
 
 
-def _lens(table: Table) -> Body:
+def _lens(table: SceneTable) -> Body:
     radius, offset = table.positive("radius"), table.positive("offset")
     return shapes.lens(radius, offset, rounding=_rounding(table))
 
 
-def _cap(table: Table) -> Body:
+def _cap(table: SceneTable) -> Body:
     radius, offset = table.positive("radius"), table.number("offset")
     return shapes.cap(radius, offset, rounding=_rounding(table))
 
 
-def _halfspace(table: Table) -> Body:
+def _halfspace(table: SceneTable) -> Body:
     normal = table.vector("normal", 3) if "normal" in table else (0.0, 0.0, 1.0)
     return shapes.halfspace(normal, table.number("offset", 0.0), rounding=_rounding(table))
 
 
-def _planar_loop(table: Table) -> Body:
+def _planar_loop(table: SceneTable) -> Body:
     curves = [read_curve(entry) for entry in table.tables("curves")]
     return shapes.planar_loop(curves, _rounding(table))
 
 
-def _rounded_polytope(table: Table) -> Body:
+def _rounded_polytope(table: SceneTable) -> Body:
     vertices = table.points("vertices", 3, at_least=4)
     return shapes.rounded_polytope(vertices, table.not_negative("rounding"))
 
 
-def _spindle(table: Table) -> Body:
+def _spindle(table: SceneTable) -> Body:
     radius, length = table.positive("radius"), table.positive("length")
     return shapes.spindle(radius, length, table.count("patches", 3), rounding=_rounding(table))
 
 
-def _gore(table: Table) -> Body:
+def _gore(table: SceneTable) -> Body:
     radius, height = table.positive("radius"), table.positive("height")
     return shapes.gore(radius, height, table.count("patches", 4), rounding=_rounding(table))
 
 
-def _egg(table: Table) -> Body:
+def _egg(table: SceneTable) -> Body:
     radius, length = table.positive("radius"), table.positive("length")
     return shapes.egg(radius, length, table.number("taper", 0.4), rounding=_rounding(table))
 
 
-def _hull_of_revolution(table: Table) -> Body:
+def _hull_of_revolution(table: SceneTable) -> Body:
     profile = read_curve(table.table("curve")).transformed(UPRIGHT, np.zeros(3))
     return shapes.hull_of_revolution(profile, rounding=_rounding(table))
 
 
-def _superellipsoid(table: Table) -> Body:
+def _superellipsoid(table: SceneTable) -> Body:
     return shapes.superellipsoid(
         semi_axes=table.positive_vector("semi_axes", 3),
         exponents=table.positive_vector("exponents", 2),
@@ -136,7 +136,7 @@ def _superellipsoid(table: Table) -> Body:
     )
 
 
-def _patches(table: Table) -> Body:
+def _patches(table: SceneTable) -> Body:
     patches = read_patches(table)
     tolerance = table.positive("tolerance") if "tolerance" in table else None
     dent = "convexity_tolerance"
@@ -200,14 +200,14 @@ def swept_keys(shape: str) -> tuple[str, ...]:
     return ("radius", "rounding") if shape in ("sphere", "capsule") else ("rounding",)
 
 
-def read_body(table: Table, beside: Sequence[str] = ()) -> Body:
+def read_body(table: SceneTable, beside: Sequence[str] = ()) -> Body:
     """Return the convex body that a ``[bodies.NAME]`` table describes.
 
     Raises SceneError: at an unknown shape or key, or a value that the shape refuses.
 
     Parameters
     ----------
-    table : Table
+    table : SceneTable
         With ``shape``, the shape's own keys, and optionally ``scale`` or ``affine``.
     beside : sequence of str
         Keys of the table that are not the shape's.
@@ -226,7 +226,7 @@ def read_body(table: Table, beside: Sequence[str] = ()) -> Body:
     return table.build(lambda: body.transformed(affine), table.only_one(("affine", "scale")))
 
 
-def _affine(table: Table) -> Array | None:
+def _affine(table: SceneTable) -> Array | None:
     given = table.only_one(("affine", "scale"))
     if given == "affine":
         return table.matrix("affine", ((3, 3), (4, 4)))
@@ -242,21 +242,21 @@ class CurveKind(NamedTuple):
     """One kind of curve: its keys, and what reads them."""
 
     keys: tuple[str, ...]
-    read: Callable[[Table], Curve]
+    read: Callable[[SceneTable], Curve]
 
 
-def _line(table: Table) -> Curve:
+def _line(table: SceneTable) -> Curve:
     start, end = table.vector("start", 2), table.vector("end", 2)
     return table.build(lambda: Line(start, end))
 
 
-def _bezier(table: Table) -> Curve:
+def _bezier(table: SceneTable) -> Curve:
     points = table.points("control_points", 2, at_least=2)
     weights = table.numbers("weights") if "weights" in table else None
     return table.build(lambda: RationalBezier(points, weights))
 
 
-def _ellipse(table: Table) -> Curve:
+def _ellipse(table: SceneTable) -> Curve:
     centre = table.vector("centre", 2)
     a, b = table.positive_vector("semi_axes", 2)
     tilt = table.number("tilt", 0.0)
@@ -266,14 +266,14 @@ def _ellipse(table: Table) -> Curve:
     return table.build(lambda: ConicArc(centre, a * along, b * across, first, last))
 
 
-def _nurbs(table: Table) -> Curve:
+def _nurbs(table: SceneTable) -> Curve:
     points = table.points("control_points", 2, at_least=2)
     knots = table.numbers("knots")
     weights = table.numbers("weights") if "weights" in table else None
     return table.build(lambda: NurbsCurve(points, knots, weights))
 
 
-def _formula(table: Table) -> Curve:
+def _formula(table: SceneTable) -> Curve:
     x, y = table.formula("x"), table.formula("y")
     first, last = table.number("start"), table.number("end")
     parameters = table.named_numbers("parameters")
@@ -290,7 +290,7 @@ CURVES: Mapping[str, CurveKind] = {
 """Every curve that a planar loop may be made of."""
 
 
-def read_curve(table: Table) -> Curve:
+def read_curve(table: SceneTable) -> Curve:
     """Return the planar curve that one table of ``curves`` describes.
 
     Raises SceneError: at an unknown kind or key, or a value that the curve refuses.

@@ -23,7 +23,7 @@ from standoff.scene.devices import Coupled, read_coupled
 from standoff.scene.errors import SceneError
 from standoff.scene.file_content import SIMULATION_KEYS, FileContent, named, read_content
 from standoff.scene.motions import read_motion
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.simulation.contact import HuntCrossley
 from standoff.simulation.operator import SIDES, Operator
 from standoff.simulation.pair_laws import BESIDE
@@ -174,7 +174,7 @@ def load_simulation(
     )
 
 
-def _refuse_pair(top: Table) -> None:
+def _refuse_pair(top: SceneTable) -> None:
     """Name the commands for a file of the other kind, if that is what it is."""
     for key in ("pair", "pairs"):
         if key in top and "simulate" not in top:
@@ -185,7 +185,7 @@ def _refuse_pair(top: Table) -> None:
             )
 
 
-def _every(settings: Table, ticks_a_reading: int) -> int:
+def _every(settings: SceneTable, ticks_a_reading: int) -> int:
     """Ticks per record: whole readings if a device is read."""
     every = settings.count("every", ticks_a_reading)
     if every % ticks_a_reading:
@@ -197,7 +197,7 @@ def _every(settings: Table, ticks_a_reading: int) -> int:
     return every
 
 
-def _settings(top: Table, given: Mapping[str, object]) -> Table:
+def _settings(top: SceneTable, given: Mapping[str, object]) -> SceneTable:
     """The table ``[simulate]``, with what was given in place of its values."""
     table = top.table("simulate")
     table.expect(*SETTINGS)
@@ -205,7 +205,7 @@ def _settings(top: Table, given: Mapping[str, object]) -> Table:
     return table.replaced(over)
 
 
-def _operator(system: System, step: float, settings: Table) -> Operator:
+def _operator(system: System, step: float, settings: SceneTable) -> Operator:
     method = settings.choice("method", list(METHODS), "semi-implicit")
     tracker = settings.choice("tracker", list(SIDES), "beside")
     gain = settings.positive("gain") if "gain" in settings else None
@@ -247,7 +247,7 @@ def _rigid_bodies(content: FileContent) -> list[RigidBody]:
     return found
 
 
-def _free(table: Table, body: Body | SolidModel, pose: Pose) -> RigidBody:
+def _free(table: SceneTable, body: Body | SolidModel, pose: Pose) -> RigidBody:
     table.expect(*FREE_KEYS)
     if table.only_one(("density", "mass")) is None:
         table.required("density", "density = 1000.0 (or mass = 1.0)")
@@ -266,7 +266,7 @@ def _free(table: Table, body: Body | SolidModel, pose: Pose) -> RigidBody:
     )
 
 
-def _contact(table: Table) -> HuntCrossley:
+def _contact(table: SceneTable) -> HuntCrossley:
     given = {
         "stiffness": table.positive("stiffness", example="stiffness = 1e6"),
         "damping": table.not_negative("damping", 0.0),
@@ -278,10 +278,10 @@ def _contact(table: Table) -> HuntCrossley:
 
 
 def _system(
-    top: Table,
+    top: SceneTable,
     names: tuple[str, ...],
     rigid: list[RigidBody],
-    settings: Table,
+    settings: SceneTable,
     coupled: Coupled | None,
 ) -> System:
     """The system, its contacts those of ``[contact]``, but for the pairs of ``[[contacts]]``."""

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from standoff.scene.motions import Motion
-from standoff.scene.reader import Table, shown, unknown_name
+from standoff.scene.reader import SceneTable, shown, unknown_name
 from standoff.tracking.law_options import Law
 from standoff.world import Compound, World
 from standoff.world.pieces import dimension_of
-from standoff.world.rules import Given, Names, packed_rules
+from standoff.world.rules import Names, PairRules, packed_rules
 from standoff.world.shapes import Shape
 
 NamePair = tuple[str, str]
@@ -53,9 +53,9 @@ class WorldRules:
     margins: Mapping[NamePair, float] = field(default_factory=dict)
 
     @property
-    def given(self) -> Given:
+    def given(self) -> PairRules:
         """What it says of pairs."""
-        return Given(self.groups, self.ignore, self.only, self.parents, self.margins)
+        return PairRules(self.groups, self.ignore, self.only, self.parents, self.margins)
 
 
 def by_piece(bodies: Mapping[str, Shape | Compound]) -> dict[str, Shape]:
@@ -70,7 +70,7 @@ def by_piece(bodies: Mapping[str, Shape | Compound]) -> dict[str, Shape]:
 
 
 def read_world(
-    top: Table, bodies: Mapping[str, Shape | Compound], moving: Collection[str]
+    top: SceneTable, bodies: Mapping[str, Shape | Compound], moving: Collection[str]
 ) -> WorldRules | None:
     """Return what a scene's ``[world]`` says, None where it has none.
 
@@ -79,7 +79,7 @@ def read_world(
 
     Parameters
     ----------
-    top : Table
+    top : SceneTable
         The scene's top table.
     bodies : mapping of str to Body, Solid or Compound
     moving : collection of str
@@ -129,7 +129,7 @@ def made_world(
     )
 
 
-def _name(table: Table, value: object, key: str, known: Collection[str], noun: str) -> str:
+def _name(table: SceneTable, value: object, key: str, known: Collection[str], noun: str) -> str:
     if not isinstance(value, str):
         raise table.error(f"must be the name of a {noun} in quotes, got {shown(value)}", key)
     if value not in known:
@@ -137,7 +137,7 @@ def _name(table: Table, value: object, key: str, known: Collection[str], noun: s
     return value
 
 
-def _groups(table: Table, bodies: Collection[str]) -> dict[str, list[str]]:
+def _groups(table: SceneTable, bodies: Collection[str]) -> dict[str, list[str]]:
     if "groups" not in table:
         return {}
     groups = table.table("groups", example='groups = { robot = ["arm", "hand"] }')
@@ -151,7 +151,7 @@ def _groups(table: Table, bodies: Collection[str]) -> dict[str, list[str]]:
 
 
 def _fixed(
-    table: Table,
+    table: SceneTable,
     bodies: Collection[str],
     groups: Mapping[str, Sequence[str]],
     moving: Collection[str],
@@ -170,7 +170,7 @@ def _fixed(
     return tuple(found)
 
 
-def _pairs(table: Table, key: str, known: Collection[str]) -> tuple[NamePair, ...] | None:
+def _pairs(table: SceneTable, key: str, known: Collection[str]) -> tuple[NamePair, ...] | None:
     if key not in table:
         return None
     found = []
@@ -187,7 +187,7 @@ def _pairs(table: Table, key: str, known: Collection[str]) -> tuple[NamePair, ..
     return tuple(found)
 
 
-def _parents(table: Table, bodies: Collection[str]) -> dict[str, str]:
+def _parents(table: SceneTable, bodies: Collection[str]) -> dict[str, str]:
     if "parents" not in table:
         return {}
     parents = table.table("parents", example='parents = { hand = "arm" }')
@@ -197,7 +197,7 @@ def _parents(table: Table, bodies: Collection[str]) -> dict[str, str]:
     return {child: parents.choice(child, list(bodies), noun="body") for child in parents.names()}
 
 
-def _margins(table: Table, known: Collection[str]) -> dict[NamePair, float]:
+def _margins(table: SceneTable, known: Collection[str]) -> dict[NamePair, float]:
     """Margins written as lists [a, b, length], or as tables."""
     found: dict[NamePair, float] = {}
     for k, value in enumerate(table.entries("margins") if "margins" in table else ()):
@@ -210,7 +210,7 @@ def _margins(table: Table, known: Collection[str]) -> dict[NamePair, float]:
                 f"got {shown(value)}",
                 key,
             )
-        entry = Table(value, file=table.file, path=f"{table.path}.{key}")
+        entry = SceneTable(value, file=table.file, path=f"{table.path}.{key}")
         entry.expect(*MARGIN_KEYS)
         a, b = (
             _name(entry, entry.required(side, f'{side} = "arm"'), side, known, "body or group")

@@ -10,7 +10,7 @@ from standoff.kernels.entries import servo as entries
 from standoff.typing import Array
 
 
-class Box:
+class Mailbox:
     """The newest row of one writer, for any number of readers.
 
     The writer goes round a few rows and then publishes the number of the newest. A reader copies

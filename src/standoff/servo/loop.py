@@ -22,7 +22,7 @@ from standoff.kernels.dynamics import servo_arrays as V
 from standoff.kernels.entries import servo as entries
 from standoff.kernels.entries.preparing import prepare_servo
 from standoff.servo import checked
-from standoff.servo.exchange import Box
+from standoff.servo.exchange import Mailbox
 from standoff.servo.loop_port import LoopPort
 from standoff.servo.report import Ended, ServoReport, in_order, told
 from standoff.servo.statistics import NANO, statistics_of
@@ -191,8 +191,8 @@ class Servo(BoundToRun):
     def _make_shared(self, log_ticks: int) -> None:
         self._asked = np.zeros(V.N_ASKED, dtype=np.int64)
         self._limits = np.full(V.N_LIMITS, np.inf)
-        self._inbox = Box(K.N_READING)
-        self._outbox = Box(V.OUT_HEADER + state_length(self._system))
+        self._inbox = Mailbox(K.N_READING)
+        self._outbox = Mailbox(V.OUT_HEADER + state_length(self._system))
         self._bins = np.zeros((V.N_MEASURED, V.BINS), dtype=np.int64)
         self._tallies = np.zeros(V.N_TALLIES, dtype=np.int64)
         self._log = np.zeros((log_ticks, V.J_LOGGED))

@@ -11,7 +11,7 @@ import numpy as np
 from standoff.kernels.dynamics import coupler_arrays as K
 from standoff.kernels.dynamics import servo_arrays as V
 from standoff.kernels.entries import servo as entries
-from standoff.servo.exchange import Box
+from standoff.servo.exchange import Mailbox
 from standoff.simulation.arrivals import reading_row
 from standoff.simulation.device import DeviceReading, Fault
 from standoff.simulation.wrench import Wrench
@@ -32,7 +32,7 @@ class LoopPort:
 
     Parameters
     ----------
-    inbox, outbox : Box
+    inbox, outbox : Mailbox
         Of the loop.
     at : int
         Where the coupler's state begins in a row of the outbox.
@@ -42,7 +42,9 @@ class LoopPort:
         Greatest age of a reading [s].
     """
 
-    def __init__(self, inbox: Box, outbox: Box, at: int, period: float, max_age: float) -> None:
+    def __init__(
+        self, inbox: Mailbox, outbox: Mailbox, at: int, period: float, max_age: float
+    ) -> None:
         self._inbox, self._outbox = inbox, outbox
         self._at = at + K.C_ON_DEVICE
         self._told = np.zeros(self._at + 6)

@@ -130,11 +130,11 @@ class Legs(ABC):
     def _switches(self, part: Any) -> list[SystemEvent]:
         """Changes of features between the steps, each located by halving."""
 
-        def look(time: float, *_: _Known) -> _Known:
-            return _Known(time, self.features(time, part.sol(time)))
+        def look(time: float, *_: _ActiveFeatures) -> _ActiveFeatures:
+            return _ActiveFeatures(time, self.features(time, part.sol(time)))
 
         found = []
-        before = _Known(float(part.t[0]), self.features(float(part.t[0]), part.y[:, 0]))
+        before = _ActiveFeatures(float(part.t[0]), self.features(float(part.t[0]), part.y[:, 0]))
         for end in part.t[1:].tolist():
             after = look(end)
             resolution = EVENT_INSTANT * max(1.0, end)
@@ -144,14 +144,14 @@ class Legs(ABC):
         return found
 
 
-class _Known(NamedTuple):
+class _ActiveFeatures(NamedTuple):
     """The active features of all pairs at a time."""
 
     time: float
     mode: Features
 
 
-def _switched(before: _Known, after: _Known) -> list[SystemEvent]:
+def _switched(before: _ActiveFeatures, after: _ActiveFeatures) -> list[SystemEvent]:
     return [
         SystemEvent(after.time, "switch", pair, " ".join(old), " ".join(new))
         for pair, (old, new) in enumerate(zip(before.mode, after.mode, strict=True))

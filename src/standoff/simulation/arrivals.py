@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.checks.numbers import is_whole
 from standoff.kernels.dynamics import coupler_arrays as K
-from standoff.simulation.device import Fault, Seen, read_motion
+from standoff.simulation.device import Fault, HandleMotion, read_motion
 from standoff.typing import Array
 
 MOST_READINGS: Final = 2**53
@@ -30,7 +30,7 @@ def reading_row(reading: Any) -> Array:
     return row
 
 
-def motion_row(seen: Seen) -> Array:
+def motion_row(seen: HandleMotion) -> Array:
     """Pose and twist as 18 numbers."""
     return np.array((*seen.R, *seen.p, *seen.v, *seen.omega))
 

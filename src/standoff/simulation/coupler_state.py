@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.kernels.dynamics import coupler_arrays as K
-from standoff.simulation.device import Fault, Seen
+from standoff.simulation.device import Fault, HandleMotion
 from standoff.simulation.passivity_observer import PortEnergy
 from standoff.simulation.wrench import Wrench
 from standoff.typing import Array
@@ -74,7 +74,7 @@ class CouplerState(NamedTuple):
         Its own clock [s], used where a tick is given no `now`; nan before the first reading.
     time, sequence : float, int
         Of the last reading; nan and -1 where there is none since it was engaged.
-    handle, tool : Seen or None
+    handle, tool : HandleMotion or None
         Where they were last.
     on_device, on_tool : tuples of six floats
         The wrenches of the last tick, force first [N, N m].
@@ -95,8 +95,8 @@ class CouplerState(NamedTuple):
     clock: float = math.nan
     time: float = math.nan
     sequence: int = -1
-    handle: Seen | None = None
-    tool: Seen | None = None
+    handle: HandleMotion | None = None
+    tool: HandleMotion | None = None
     on_device: tuple[float, ...] = NO_WRENCH
     on_tool: tuple[float, ...] = NO_WRENCH
     held: tuple[tuple[float, ...], ...] = ()
@@ -158,5 +158,5 @@ def unpacked_state(row: Array) -> CouplerState:
     )
 
 
-def _seen(x: list[float]) -> Seen:
-    return Seen(tuple(x[:9]), tuple(x[9:12]), tuple(x[12:15]), tuple(x[15:18]))
+def _seen(x: list[float]) -> HandleMotion:
+    return HandleMotion(tuple(x[:9]), tuple(x[9:12]), tuple(x[12:15]), tuple(x[15:18]))

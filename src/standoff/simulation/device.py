@@ -152,7 +152,7 @@ _ADVICE = {
 }
 
 
-class Seen(NamedTuple):
+class HandleMotion(NamedTuple):
     """Pose and twist as plain numbers: what a tick computes with.
 
     Attributes
@@ -172,7 +172,7 @@ STILL = (0.0, 0.0, 0.0)
 _AT_REST = Twist.zero()
 
 
-def read_motion(pose: Any, twist: Any) -> Seen | Fault:
+def read_motion(pose: Any, twist: Any) -> HandleMotion | Fault:
     """Return a pose and a twist (or None) as plain numbers, or what is wrong with them."""
     # Whatever a driver hands over, and whatever it raises when it is read, the answer is a fault,
     # never an exception: the force on the handle must go to zero in this very tick.
@@ -186,10 +186,10 @@ def read_motion(pose: Any, twist: Any) -> Seen | Fault:
     return as_numbers(placed, moving)
 
 
-def as_numbers(pose: Pose, twist: Twist) -> Seen:
+def as_numbers(pose: Pose, twist: Twist) -> HandleMotion:
     """Return a pose and a twist as plain numbers."""
     moving = twist.in_world(pose)
-    return Seen(
+    return HandleMotion(
         tuple(pose.rotation.ravel().tolist()),
         tuple(pose.translation.tolist()),
         tuple(moving.v.tolist()),

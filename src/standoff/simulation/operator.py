@@ -30,7 +30,7 @@ from standoff.simulation.device_loop import (
 from standoff.simulation.device_readings import DeviceReadings
 from standoff.simulation.near_pairs import near_rows
 from standoff.simulation.packed_system import driven_table, pack_system
-from standoff.simulation.pair_contacts import PairContact, Told, no_room, pair_contacts
+from standoff.simulation.pair_contacts import ContactHistory, PairContact, no_room, pair_contacts
 from standoff.simulation.pair_laws import (
     Laws,
     keeps_polytopes,
@@ -216,7 +216,7 @@ class Operator(KeepsReadOnly):
         """
         self._check_state(state)
         ticks, every = self._counts(ticks, every)
-        told = Told() if yes_or_no(contacts, "contacts") else None
+        told = ContactHistory() if yes_or_no(contacts, "contacts") else None
         check_device(device, self.system.coupler is not None)
         check_count(device, ticks // self.ticks_a_reading)
         count = ticks // every + 1
@@ -265,12 +265,12 @@ class Operator(KeepsReadOnly):
             run that begins with it finds them.
         """
         self._check_state(state)
-        told, data = Told(), self.room_for(state)
+        told, data = ContactHistory(), self.room_for(state)
         self._tell(data, told)
         spots, places = told.rows.spots_of(0), told.rows.places_of(0)
         return pair_contacts(self.system, data[: state_length(self.system)], spots, places)
 
-    def _tell(self, data: Array, told: Told) -> None:
+    def _tell(self, data: Array, told: ContactHistory) -> None:
         """Add the contacts of a state in its data, in which places may be found first."""
         shape = state_length(self.system), account_width(self.system)
         records = np.empty((1, shape[0])), np.empty((1, shape[1]))

@@ -131,7 +131,7 @@ def no_room() -> Array:
     return np.zeros(K.TOLD_HEADER)
 
 
-class Told:
+class ContactHistory:
     """Spots and places of one state after the other, as a run tells them.
 
     Attributes

@@ -24,7 +24,7 @@ from standoff.simulation.device import (
     STILL,
     DeviceLimits,
     DeviceReading,
-    Seen,
+    HandleMotion,
     as_numbers,
 )
 from standoff.simulation.disturbances import Disturbances
@@ -301,13 +301,13 @@ class SimulatedDevice:
         R = turned_on(R, turn)
         if self._sample % SQUARED_UP == 0:
             R = tuple(without_rounding(np.array(R).reshape(3, 3)).ravel().tolist())
-        self._moving = Seen(R, combined(1.0, p, 1.0, way), v, omega)
+        self._moving = HandleMotion(R, combined(1.0, p, 1.0, way), v, omega)
 
-    def _meant(self, t: float) -> Seen:
+    def _meant(self, t: float) -> HandleMotion:
         """Where the hand tries to be; the home position if there is no hand, which pulls at
         nothing."""
         if self._path is None:
-            return Seen(self._moving.R, self._moving.p, STILL, STILL)
+            return HandleMotion(self._moving.R, self._moving.p, STILL, STILL)
         pose = self._path.pose(t)
         return as_numbers(pose, self._path.twist(t))
 

@@ -13,7 +13,7 @@ PATCH_ALONE = (
 """Why patches are refused."""
 
 
-class Asked(NamedTuple):
+class QueryOptions(NamedTuple):
     """Options of ``so.solids.distance``; lengths, and a number of evaluations."""
 
     within: float | None = None
@@ -23,4 +23,4 @@ class Asked(NamedTuple):
     patch: float | None = None
 
 
-DEFAULT = Asked()
+DEFAULT = QueryOptions()

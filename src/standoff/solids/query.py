@@ -9,7 +9,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
+from standoff.solids.asked import DEADLINE, PATCH_ALONE, QueryOptions
 from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.solid import PlanarSolid
 from standoff.solids.spatial.distance import spatial_distance
@@ -58,7 +58,7 @@ def distance(  # noqa: PLR0913 - all but four are keywords with defaults
     -------
     SolidProximity
     """
-    asked = Asked(
+    asked = QueryOptions(
         None if within is None else positive(within, "within"),
         None if tolerance is None else positive(tolerance, "tolerance"),
         None if minima is None else positive(minima, "minima"),

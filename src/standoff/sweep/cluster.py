@@ -13,14 +13,14 @@ from standoff.sweep.digests import digest_of
 from standoff.sweep.folder import put_text, shard_file
 from standoff.sweep.known_works import work_of
 from standoff.sweep.shard import text_of_shard
-from standoff.sweep.work import Token, Work
+from standoff.sweep.work import ShardWork, Token
 
 AHEAD = 2
 """Shards per thread of the cluster that are handed out before they are asked for."""
 
 
 def made_on_cluster(
-    work: Work, folder: Path, missing: Sequence[int], address: str
+    work: ShardWork, folder: Path, missing: Sequence[int], address: str
 ) -> Iterator[int]:
     """Make shards on a cluster; yields each one's number when it is there.
 

@@ -13,7 +13,7 @@ from standoff.errors import StandoffError
 from standoff.sweep.code import code_facts
 from standoff.sweep.digests import digest_of
 from standoff.sweep.shard import NotThisShard, read_shard, text_of_shard
-from standoff.sweep.work import Found, Work
+from standoff.sweep.work import ShardTotals, ShardWork
 from standoff.whole_files import write_whole
 from standoff.wording import printable
 
@@ -49,7 +49,7 @@ def put_text(file: Path, text: str) -> None:
     write_whole({file: lambda stream: stream.write(text.encode("utf-8"))})
 
 
-def manifest_of(work: Work) -> dict[str, Any]:
+def manifest_of(work: ShardWork) -> dict[str, Any]:
     """Return what the manifest of a job says."""
     code = code_facts()
     return {
@@ -112,7 +112,7 @@ def refuse_others(folder: Path) -> None:
         )
 
 
-def prepare(folder: Path, work: Work) -> None:
+def prepare(folder: Path, work: ShardWork) -> None:
     """Make the folder ready for the job: new, or with shards of the same job and code.
 
     Call it while the folder is `locked`.
@@ -176,7 +176,7 @@ def _named(file: Path) -> str:
     return printable(str(file))
 
 
-def make_shard(work: Work, folder: Path, k: int) -> int:
+def make_shard(work: ShardWork, folder: Path, k: int) -> int:
     """Compute a shard and write its file; returns its number.
 
     Raises OSError if it cannot be written, as on a full disk: then it is not there.
@@ -186,7 +186,7 @@ def make_shard(work: Work, folder: Path, k: int) -> int:
     return k
 
 
-def kept_shard(work: Work, folder: Path, k: int) -> Found | None:
+def kept_shard(work: ShardWork, folder: Path, k: int) -> ShardTotals | None:
     """Return what a shard's file holds, None where there is none.
 
     Raises NotThisShard if it is damaged, or of something else.
@@ -198,7 +198,7 @@ def kept_shard(work: Work, folder: Path, k: int) -> Found | None:
     return read_shard(work, digest_of(code_facts()), k, text)
 
 
-def missing_shards(work: Work, folder: Path, tell: Tell) -> list[int]:
+def missing_shards(work: ShardWork, folder: Path, tell: Tell) -> list[int]:
     """Return the numbers of shards that are to be computed; damaged ones are told and removed."""
     missing = []
     for k in range(work.shards):

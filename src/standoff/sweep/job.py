@@ -22,7 +22,7 @@ from standoff.sweep.samplers import Sampler
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.subject import Alone, Subject
 from standoff.sweep.summary import Summary
-from standoff.sweep.work import Token, Work
+from standoff.sweep.work import ShardWork, Token
 from standoff.tracking.distance_arrays import Distances
 from standoff.typing import Array
 
@@ -32,7 +32,7 @@ call costs by itself is shared by many."""
 
 
 @dataclass(frozen=True, eq=False)
-class Job(Work):
+class Job(ShardWork):
     """A sweep over what a job's file names: a pair of bodies, a world or a robot.
 
     `standoff.sweep.load_job` reads one from a file.

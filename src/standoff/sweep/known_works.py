@@ -8,7 +8,7 @@ from standoff.errors import StandoffError
 from standoff.sweep.job import Job
 from standoff.sweep.proof.proof import Proof
 from standoff.sweep.reading import load_job
-from standoff.sweep.work import Token, Work
+from standoff.sweep.work import ShardWork, Token
 
 _jobs: dict[tuple[str, str], Job] = {}
 _proofs: dict[Token, Proof] = {}
@@ -41,7 +41,7 @@ def job_of(file: str, digest: str) -> Job:
     return job
 
 
-def work_of(token: Token) -> Work:
+def work_of(token: Token) -> ShardWork:
     """Return the work of a token, its job's file read once.
 
     Raises SceneError, StandoffError as of `job_of`.

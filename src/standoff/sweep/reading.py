@@ -14,7 +14,7 @@ from standoff.robots.limits import check_limits
 from standoff.scene import SceneError
 from standoff.scene.degrees import ENDING, with_degrees
 from standoff.scene.files import existing_file, text_of, toml_tables
-from standoff.scene.reader import Table, shown, unknown_name
+from standoff.scene.reader import SceneTable, shown, unknown_name
 from standoff.sweep.job import Job
 from standoff.sweep.keep import Bins, Keep
 from standoff.sweep.parameters import ANGLE, SHIFTS, SLIDE, TURNS, UNIFORM, Parameter
@@ -75,7 +75,7 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     """
     path = file_name(os.fspath(file) if isinstance(file, os.PathLike) else file)
     try:
-        top = Table(toml_tables(text_of(path)), file=path)
+        top = SceneTable(toml_tables(text_of(path)), file=path)
     except SceneError as error:
         raise error.found_in(path) from error
     version = top.required("version", f"version = {VERSION}")
@@ -108,7 +108,7 @@ def load_job(file: str | os.PathLike[str]) -> Job:
     )
 
 
-def _sampler_table(top: Table) -> tuple[str, Table]:
+def _sampler_table(top: SceneTable) -> tuple[str, SceneTable]:
     table = top.table("sampler")
     kind = table.choice("kind", KINDS)
     keys = {"grid": ("kind",), "file": ("kind", "file", "rows")}
@@ -117,7 +117,7 @@ def _sampler_table(top: Table) -> tuple[str, Table]:
 
 
 def _source(
-    table: Table, kind: str, parameters: tuple[Parameter, ...]
+    table: SceneTable, kind: str, parameters: tuple[Parameter, ...]
 ) -> tuple[Sampler | SampleFile, int, int]:
     if kind == "file":
         file = existing_file(table, "file", 'file = "rows.parquet"')
@@ -141,7 +141,7 @@ def _source(
     return table.build(lambda: SEEDED[kind](rows, width, seed), "kind"), rows, seed
 
 
-def _keep(top: Table, within: float | None) -> Keep:
+def _keep(top: SceneTable, within: float | None) -> Keep:
     if "keep" not in top:
         return Keep()
     table = top.table("keep")
@@ -160,7 +160,7 @@ def _keep(top: Table, within: float | None) -> Keep:
     )
 
 
-def _bins(table: Table) -> Bins:
+def _bins(table: SceneTable) -> Bins:
     table.expect("from", "to", "bins")
     low, high = table.number("from"), table.number("to")
     if not low < high:
@@ -169,7 +169,7 @@ def _bins(table: Table) -> Bins:
     return Bins(low, high, _most(table, "bins", 1, MOST_BINS))
 
 
-def _shard_rows(top: Table) -> int:
+def _shard_rows(top: SceneTable) -> int:
     if "shards" not in top:
         return DEFAULT_SHARD
     table = top.table("shards")
@@ -177,7 +177,7 @@ def _shard_rows(top: Table) -> int:
     return _most(table, "rows", DEFAULT_SHARD, MOST_ROWS)
 
 
-def _most(table: Table, key: str, default: int, most: int) -> int:
+def _most(table: SceneTable, key: str, default: int, most: int) -> int:
     """A whole number above zero that is not too large."""
     value = table.count(key, default)
     if value > most:
@@ -188,14 +188,14 @@ def _most(table: Table, key: str, default: int, most: int) -> int:
 # From ``[parameters.NAME]`` tables to the numbers that change from row to row.
 
 
-def read_parameters(top: Table, subject: Subject, kind: str) -> tuple[Parameter, ...]:
+def read_parameters(top: SceneTable, subject: Subject, kind: str) -> tuple[Parameter, ...]:
     """Return a job's parameters.
 
     Raises SceneError.
 
     Parameters
     ----------
-    top : Table
+    top : SceneTable
         The job's, with ``parameters``.
     subject : Subject
     kind : str
@@ -225,7 +225,7 @@ def read_parameters(top: Table, subject: Subject, kind: str) -> tuple[Parameter,
     return tuple(found)
 
 
-def _of_body(name: str, table: Table, subject: Subject, kind: str) -> Parameter:
+def _of_body(name: str, table: SceneTable, subject: Subject, kind: str) -> Parameter:
     rotation = () if kind in ("file", "grid") else ("rotation",)
     if "rotation" in table and not rotation:
         raise table.error(
@@ -253,7 +253,7 @@ def _not_movable(name: str, subject: Subject) -> str:
     return unknown_name(name, subject.movable, "moving body of the world")
 
 
-def _of_joint(name: str, table: Table, subject: RobotSubject, kind: str) -> Parameter:
+def _of_joint(name: str, table: SceneTable, subject: RobotSubject, kind: str) -> Parameter:
     for key in ("moves", "what", "rotation"):
         if key in table:
             raise table.error("is of bodies; a parameter of a robot has 'joint' instead", key)
@@ -287,7 +287,7 @@ def _check_end(subject: RobotSubject, parameter: Parameter, end: float) -> None:
     check_limits(subject.robot, q, "the end of the range")
 
 
-def _given(table: Table, key: str) -> str:
+def _given(table: SceneTable, key: str) -> str:
     """The key, as the table has it."""
     return f"{key}{ENDING}" if f"{key}{ENDING}" in table else key
 
@@ -299,7 +299,7 @@ def _range_keys(kind: str) -> tuple[str, ...]:
 
 
 def _ranged(
-    table: Table,
+    table: SceneTable,
     parameter: Parameter,
     kind: str,
     limits: tuple[float, float] = (-math.inf, math.inf),
@@ -328,7 +328,7 @@ def _usual(limit: float, in_degrees: bool) -> float | None:
     return math.degrees(limit) if in_degrees else limit
 
 
-def _in_degrees(table: Table, parameter: Parameter) -> bool:
+def _in_degrees(table: SceneTable, parameter: Parameter) -> bool:
     """Are its numbers degrees? Refuses degrees of what is no angle, and both units at once."""
     no_angle = not parameter.unit
     kind = "a length" if parameter.is_length else "a number without a unit"
@@ -347,7 +347,7 @@ def _in_degrees(table: Table, parameter: Parameter) -> bool:
     return bool(found)
 
 
-def _check_beside(table: Table, new: Parameter, before: list[Parameter]) -> None:
+def _check_beside(table: SceneTable, new: Parameter, before: list[Parameter]) -> None:
     """Refuse what changes the same as another parameter."""
     for other in before:
         if other.moves != new.moves:

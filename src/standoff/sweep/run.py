@@ -31,7 +31,7 @@ from standoff.sweep.proof.proof import Proof, check_proof
 from standoff.sweep.proof.report import ProofReport, proof_facts
 from standoff.sweep.report import Report, report_facts
 from standoff.sweep.shard import NotThisShard
-from standoff.sweep.work import Token, Work
+from standoff.sweep.work import ShardWork, Token
 from standoff.whole_files import file_name
 from standoff.worker_processes import result_of, worker_processes
 
@@ -125,7 +125,7 @@ def run_proof(
 
 @contextmanager
 def _all_made(
-    work: Work,
+    work: ShardWork,
     folder: str | Path,
     workers: int,
     cluster: str | None,
@@ -154,7 +154,7 @@ def _all_made(
         yield folder, merged(work, folder)
 
 
-def merged(work: Work, folder: Path) -> Any:
+def merged(work: ShardWork, folder: Path) -> Any:
     """Return what is kept of all rows, from the files of all shards.
 
     Raises StandoffError if one is missing, or is not what was written.
@@ -173,12 +173,12 @@ def merged(work: Work, folder: Path) -> Any:
     return found
 
 
-def _length(work: Work, k: int) -> int:
+def _length(work: ShardWork, k: int) -> int:
     first, end = work.shard(k)
     return end - first
 
 
-def _made(work: Work, folder: Path, missing: Sequence[int], workers: int) -> Iterator[int]:
+def _made(work: ShardWork, folder: Path, missing: Sequence[int], workers: int) -> Iterator[int]:
     """Make shards; yields each one's number when it is there."""
     if workers == 1 or len(missing) < 2:
         for k in missing:

@@ -10,7 +10,7 @@ from standoff.checks.names import one_of
 from standoff.errors import StandoffError
 from standoff.scene import Scene
 from standoff.scene.files import toml_tables
-from standoff.scene.reader import Table, unknown_name
+from standoff.scene.reader import SceneTable, unknown_name
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.shaped_body import ShapedBody, shape_numbers
@@ -18,7 +18,7 @@ from standoff.sweep.subjects.subject import Subject
 from standoff.tracking.inputs import check_pair
 
 
-def shape_parameter(name: str, table: Table, subject: Subject) -> Parameter:
+def shape_parameter(name: str, table: SceneTable, subject: Subject) -> Parameter:
     """Return the parameter of a table with ``shapes``, without its range.
 
     Raises SceneError: a subject that is no pair of convex bodies, another body, a body that is read
@@ -48,13 +48,13 @@ def shape_parameter(name: str, table: Table, subject: Subject) -> Parameter:
     return Parameter(name, body, what, shape=True)
 
 
-def body_table(scene: Scene, name: str) -> Table:
+def body_table(scene: Scene, name: str) -> SceneTable:
     """Return the table ``[bodies.NAME]`` of a scene's file."""
-    return Table(toml_tables(scene.text), file=scene.file).table("bodies").table(name)
+    return SceneTable(toml_tables(scene.text), file=scene.file).table("bodies").table(name)
 
 
 def with_shapes(
-    top: Table, subject: Subject, parameters: Sequence[Parameter], kind: str
+    top: SceneTable, subject: Subject, parameters: Sequence[Parameter], kind: str
 ) -> Subject:
     """Return the subject whose bodies are made for each row; the same one where no parameter
     changes a shape.
@@ -63,7 +63,7 @@ def with_shapes(
 
     Parameters
     ----------
-    top : Table
+    top : SceneTable
         The job's.
     subject : Subject
     parameters : sequence of Parameter
@@ -86,7 +86,11 @@ def with_shapes(
 
 
 def _check_ends(
-    top: Table, shaped: ShapedBody, subject: ConvexPair, k: int, parameters: Sequence[Parameter]
+    top: SceneTable,
+    shaped: ShapedBody,
+    subject: ConvexPair,
+    k: int,
+    parameters: Sequence[Parameter],
 ) -> None:
     """Make a body of all combinations of its ranges' ends."""
     own = [p for p in parameters if p.shape and p.moves == shaped.name]

@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 from standoff.sweep.digests import digest_of
-from standoff.sweep.work import Found, Work
+from standoff.sweep.work import ShardTotals, ShardWork
 
 FORMAT, VERSION = "standoff sweep shard", 1
 
@@ -15,7 +15,7 @@ class NotThisShard(Exception):
     """A shard's file that is damaged, or belongs to something else; the message says why."""
 
 
-def text_of_shard(work: Work, code: str, k: int, found: Found) -> str:
+def text_of_shard(work: ShardWork, code: str, k: int, found: ShardTotals) -> str:
     """Return the text of a shard's file: the same for the same job and code.
 
     Parameters
@@ -42,7 +42,7 @@ def text_of_shard(work: Work, code: str, k: int, found: Found) -> str:
     return f"{text}\n"
 
 
-def read_shard(work: Work, code: str, k: int, text: bytes) -> Found:
+def read_shard(work: ShardWork, code: str, k: int, text: bytes) -> ShardTotals:
     """Return what a shard's file holds.
 
     Raises NotThisShard if it is damaged, or is not this shard of this job by this code.

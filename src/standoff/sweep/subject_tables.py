@@ -12,7 +12,7 @@ from standoff.robots.model_files import ModelOptions, among, robot_of_file
 from standoff.scene import Scene, SceneError, load_scene
 from standoff.scene.file_content import DEFAULT_LENGTH_UNIT
 from standoff.scene.files import existing_file
-from standoff.scene.reader import Table, shown
+from standoff.scene.reader import SceneTable, shown
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.robot import RobotSubject
 from standoff.sweep.subjects.solids import SolidPair
@@ -38,14 +38,14 @@ FIXES = {
 """What the library's messages say to do, as a job's file says it."""
 
 
-def read_subject(top: Table) -> tuple[Subject, str]:
+def read_subject(top: SceneTable) -> tuple[Subject, str]:
     """Return what a job sweeps, and a title for it.
 
     Raises SceneError: a file that is missing or refused; keys that do not go together.
 
     Parameters
     ----------
-    top : Table
+    top : SceneTable
         The job's.
     """
     given = [key for key in KINDS if key in top]
@@ -67,7 +67,7 @@ def read_subject(top: Table) -> tuple[Subject, str]:
     return made, scene.title
 
 
-def _pair(top: Table, scene: Scene, within: float | None) -> Subject:
+def _pair(top: SceneTable, scene: Scene, within: float | None) -> Subject:
     scene = _seen(top, scene)
     start = scene.instant()
     a, b = (motion.path.pose(start) for motion in scene.pair_motions)
@@ -80,7 +80,7 @@ def _pair(top: Table, scene: Scene, within: float | None) -> Subject:
     return ConvexPair(scene, scene.pair_bodies, (a, b), within)
 
 
-def _seen(top: Table, scene: Scene) -> Scene:
+def _seen(top: SceneTable, scene: Scene) -> Scene:
     """The scene through the pair that is named, or its only one."""
     if not scene.pairs:
         file = printable(scene.file.name)
@@ -101,7 +101,7 @@ def _seen(top: Table, scene: Scene) -> Scene:
     return scene
 
 
-def _world(top: Table, scene: Scene, within: float | None) -> Subject:
+def _world(top: SceneTable, scene: Scene, within: float | None) -> Subject:
     scene = scene.as_world
     world, start = scene.world_with(within), scene.instant()
     if not world.moving:
@@ -114,7 +114,7 @@ def _world(top: Table, scene: Scene, within: float | None) -> Subject:
     return SceneWorld(scene, world, homes, horizon)
 
 
-def _robot(top: Table, within: float | None) -> tuple[Subject, str]:
+def _robot(top: SceneTable, within: float | None) -> tuple[Subject, str]:
     model = existing_file(top, "robot", 'robot = "arm.urdf"')
     obstacles = None
     if "obstacles" in top:
@@ -132,7 +132,7 @@ def _robot(top: Table, within: float | None) -> tuple[Subject, str]:
     return RobotSubject(robot, rest, unit, within), f"{model.stem}"
 
 
-def _options(top: Table) -> ModelOptions:
+def _options(top: SceneTable) -> ModelOptions:
     def flag(key: str) -> bool:
         return top.true_or_false(key) if key in top else False
 
@@ -146,7 +146,7 @@ def _options(top: Table) -> ModelOptions:
     )
 
 
-def _texts(top: Table, key: str) -> list[str]:
+def _texts(top: SceneTable, key: str) -> list[str]:
     found = top.entries(key, f'{key} = ["NAME"]') if key in top else []
     for k, name in enumerate(found):
         if not isinstance(name, str):
@@ -154,12 +154,12 @@ def _texts(top: Table, key: str) -> list[str]:
     return [str(name) for name in found]
 
 
-def _beside(top: Table, name: str) -> Path:
+def _beside(top: SceneTable, name: str) -> Path:
     """A folder relative to the job's."""
     return (top.file.parent if top.file is not None else Path()) / name
 
 
-def _built(top: Table, make: Any) -> Any:
+def _built(top: SceneTable, make: Any) -> Any:
     """What is made of the model, with the fixes of its errors as a job's file says them."""
     try:
         return make()

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 from standoff.sweep.digests import digest_of
 
 
-class Found(Protocol):
+class ShardTotals(Protocol):
     """What is kept of some shards."""
 
     def add(self, later: Any) -> None:
@@ -39,7 +39,7 @@ class Token(NamedTuple):
     clearance: float | None = None
 
 
-class Work(ABC):
+class ShardWork(ABC):
     """What is computed shard by shard, each by itself, and merged in their order."""
 
     file: Path
@@ -82,11 +82,11 @@ class Work(ABC):
         """Return what is kept of no shard."""
 
     @abstractmethod
-    def computed(self, k: int) -> Found:
+    def computed(self, k: int) -> ShardTotals:
         """Return what is kept of shard k."""
 
     @abstractmethod
-    def from_facts(self, facts: Mapping[str, Any]) -> Found:
+    def from_facts(self, facts: Mapping[str, Any]) -> ShardTotals:
         """Return what a shard's file has as plain data."""
 
     @abstractmethod

@@ -21,7 +21,7 @@ def with_polytope(data: Array, polytope: Array) -> Array:
     return block
 
 
-class Block:
+class FrameBlock:
     """One frame's block of memory by name, views of it: what was given, and the result.
 
     Attributes
@@ -44,7 +44,9 @@ class Block:
         self.data = data
 
     @classmethod
-    def empty(cls, state: Array, motion: Array, h: float = 0.0, has_twist: bool = False) -> Block:
+    def empty(
+        cls, state: Array, motion: Array, h: float = 0.0, has_twist: bool = False
+    ) -> FrameBlock:
         """A long block before its frame; the state is copied, a polytope behind it as well."""
         block = cls(np.empty(K.N_LONG_BLOCK))
         block.data[: K.N_OUT] = np.nan

@@ -126,7 +126,7 @@ class BranchCounts(NamedTuple):
 NO_COUNTS = BranchCounts()
 
 
-class Carried(NamedTuple, Generic[S]):
+class BranchPlace(NamedTuple, Generic[S]):
     """Where a branch has come to in a frame.
 
     Attributes
@@ -217,7 +217,7 @@ class Branches(KeepsReadOnly, Generic[S]):
                 branches = branches._ended(key, reason)
         return branches
 
-    def carried(self, follow: Callable[[Branch[S]], Carried[S]], same: Same[S]) -> Branches[S]:
+    def carried(self, follow: Callable[[Branch[S]], BranchPlace[S]], same: Same[S]) -> Branches[S]:
         """The branches in the next frame, each where its follower brings it.
 
         Of those that have come to one minimum, the one that has moved least stays, and the older
@@ -234,7 +234,7 @@ class Branches(KeepsReadOnly, Generic[S]):
         moved = [(branch.key, follow(branch)) for branch in self.branches]
         moved.sort(key=lambda pair: (pair[1].moved, pair[0]))
         after = replace(self, branches=(), changes=())
-        ends, jumps = list[Change](), list[tuple[int, Carried[S]]]()
+        ends, jumps = list[Change](), list[tuple[int, BranchPlace[S]]]()
         for key, new in moved:
             if math.isnan(new.value):
                 ends.append(Change(key, End.LOST))

@@ -9,14 +9,14 @@ import numpy as np
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.inputs import ABSENT
 from standoff.tracking.reached import AddressTable
 from standoff.tracking.rows import NO_TWIST, AnswerRows, StateRow, motion_row, poses_of, twists_of
 from standoff.typing import Array
 
 
-class Frame(NamedTuple):
+class FrameInput(NamedTuple):
     """What is given of one frame: poses (12,) and twists (6,) in world axes."""
 
     pose_a: Array
@@ -36,24 +36,26 @@ ANYWHERE, DESCEND, HERE = K.START_ANYWHERE, K.START_DESCEND, K.START_HERE
 
 
 def start(
-    table: AddressTable, frame: Frame, state: StateRow, given: int = ANYWHERE
+    table: AddressTable, frame: FrameInput, state: StateRow, given: int = ANYWHERE
 ) -> tuple[AnswerRows, bool]:
     """Begin as `given` says: the answer, and whether it is one. The state is changed in place."""
-    block = Block.empty(state.data, frame.row, 0.0, frame.has_twist)
+    block = FrameBlock.empty(state.data, frame.row, 0.0, frame.has_twist)
     done = kernels.start_anywhere(table.address, block.data, given)
     state.data[:] = block.state
     return AnswerRows(block.out), done == K.FINE
 
 
-def step(table: AddressTable, frame: Frame, h: float, state: StateRow) -> tuple[AnswerRows, bool]:
+def step(
+    table: AddressTable, frame: FrameInput, h: float, state: StateRow
+) -> tuple[AnswerRows, bool]:
     """One frame, h seconds after the last: as `start`."""
-    block = Block.empty(state.data, frame.row, h, frame.has_twist)
+    block = FrameBlock.empty(state.data, frame.row, h, frame.has_twist)
     done = kernels.step(table.address, block.data)
     state.data[:] = block.state
     return AnswerRows(block.out), done == K.FINE
 
 
-class Followed(NamedTuple):
+class FrameSequence(NamedTuple):
     """Many frames.
 
     Attributes
@@ -70,7 +72,7 @@ class Followed(NamedTuple):
 
 def run(
     table: AddressTable, motions: Array, has_twist: bool, steps: Array, state: Array
-) -> Followed:
+) -> FrameSequence:
     """Many frames in one compiled loop from a state, which is changed in place.
 
     Parameters
@@ -92,7 +94,7 @@ def run(
         at, done = kernels.values(table.address, *given, steps, at, (blocks, polytopes))
         if done == K.MORE_EVENTS:
             last = blocks[at, K.BLOCK_STATE : K.BLOCK_MOTION]
-            block = Block.empty(last, motions[at], float(steps[at]), has_twist)
+            block = FrameBlock.empty(last, motions[at], float(steps[at]), has_twist)
             done = kernels.step(table.address, block.data)
             blocks[at + 1] = block.data[: K.N_BLOCK]
             polytopes[(at + 1) % 2] = block.polytope
@@ -102,7 +104,7 @@ def run(
         at += 1
     refused = at if at < n else -1
     state[:] = blocks[min(at, n), K.BLOCK_STATE : K.BLOCK_MOTION]
-    return Followed(blocks[1:, : K.N_OUT], refused)
+    return FrameSequence(blocks[1:, : K.N_OUT], refused)
 
 
 def matrices(flats: Array) -> Array:

@@ -16,7 +16,7 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 @runtime_checkable
-class Queried(Protocol[T_co]):
+class AnswersItself(Protocol[T_co]):
     """What is no `Body`, and answers a cold query with another by itself: a solid, a compound."""
 
     def cold_query(
@@ -34,8 +34,8 @@ def distance(
 
 @overload
 def distance(
-    a: Queried[T_co],
-    b: Body | Queried[T_co],
+    a: AnswersItself[T_co],
+    b: Body | AnswersItself[T_co],
     pose_a: PoseLike,
     pose_b: PoseLike,
     *,
@@ -46,7 +46,7 @@ def distance(
 @overload
 def distance(
     a: Body,
-    b: Queried[T_co],
+    b: AnswersItself[T_co],
     pose_a: PoseLike,
     pose_b: PoseLike,
     *,
@@ -85,7 +85,7 @@ def distance(
     try:
         table = cold_table(a, b, horizon)
     except TypeError:
-        asked = [each for each in (a, b) if isinstance(each, Queried)]
+        asked = [each for each in (a, b) if isinstance(each, AnswersItself)]
         if asked:
             # a compound asks its pieces, which know nothing of compounds
             first = max(asked, key=lambda each: hasattr(each, "pieces"))

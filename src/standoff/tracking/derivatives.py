@@ -138,7 +138,7 @@ def flagged_gradient(answer: Answer) -> tuple[Smoothness, str, Array]:
     return smoothness, reason, numbers
 
 
-class Table(Protocol):
+class AnswerTable(Protocol):
     """A table of answers that can also give a row as an `Answer`."""
 
     @property
@@ -151,24 +151,24 @@ class Table(Protocol):
     def poses(self) -> tuple[Array, Array]: ...
 
     @property
-    def parts(self) -> Sequence[tuple[Table, NDArray[np.int64]]]: ...
+    def parts(self) -> Sequence[tuple[AnswerTable, NDArray[np.int64]]]: ...
 
     def __getitem__(self, k: int, /) -> Answer: ...
 
 
-def derivative_arrays(table: Table, workers: int) -> DerivativeArrays:
+def derivative_arrays(table: AnswerTable, workers: int) -> DerivativeArrays:
     """See ``Distances.derivatives``."""
     numbers = np.empty((len(table.rows), D.N_DERIVATIVES))
     smoothness, reasons = _derived_rows(table, numbers, workers)
     return DerivativeArrays(smoothness, reasons, *_parts(numbers))
 
 
-def gradients(table: Table) -> Array:
+def gradients(table: AnswerTable) -> Array:
     """See ``Distances.gradient``."""
     return flagged_gradients(table)[2]
 
 
-def flagged_gradients(table: Table) -> tuple[NDArray[np.object_], dict[int, str], Array]:
+def flagged_gradients(table: AnswerTable) -> tuple[NDArray[np.object_], dict[int, str], Array]:
     """The gradients (n, 12) alone with their flags and reasons, as `flagged_gradient`."""
     numbers = np.empty((len(table.rows), 12))
     smoothness, reasons = _derived_rows(table, numbers, 1)
@@ -176,7 +176,7 @@ def flagged_gradients(table: Table) -> tuple[NDArray[np.object_], dict[int, str]
 
 
 def _derived_rows(
-    table: Table, numbers: Array, workers: int
+    table: AnswerTable, numbers: Array, workers: int
 ) -> tuple[NDArray[np.object_], dict[int, str]]:
     """Write derivatives into rows of `numbers`; say of each whether there are any, and why not."""
     parts = table.parts
@@ -193,7 +193,7 @@ def _derived_rows(
 
 
 def _derived_rows_of_a_pair(
-    table: Table, numbers: Array, workers: int
+    table: AnswerTable, numbers: Array, workers: int
 ) -> tuple[NDArray[np.object_], dict[int, str]]:
     pair = packed(*table.bodies)
     kinds = np.zeros(len(numbers), dtype=np.int64)

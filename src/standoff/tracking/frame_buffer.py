@@ -12,7 +12,7 @@ from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries.preparing import prepare_buffer
 from standoff.kernels.entries.tracker import moved
 from standoff.kernels.state import arrays as K
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.inputs import motion_of, plain
 from standoff.tracking.mended_calls import Given, step_in
 from standoff.tracking.proximity import Proximity
@@ -48,7 +48,7 @@ class FrameBuffer:
         self.reached = reached
         self.has_twist = True
         self.repaired = 0
-        block = Block.empty(state.warm_start, motion_row(*np.zeros((2, 12))))
+        block = FrameBlock.empty(state.warm_start, motion_row(*np.zeros((2, 12))))
         block.events[:] = 0.0
         for pose in poses_of(block.motion):
             pose[[0, 4, 8]] = 1.0
@@ -58,7 +58,7 @@ class FrameBuffer:
         self._block = block
         # what a frame of given poses is called with, in one look
         self._call = self.reached.address, block
-        named = Block(block)
+        named = FrameBlock(block)
         self._motion, self._state, self._out = named.motion, named.state, named.out
         self._pose_a, self._pose_b = poses_of(self._motion)
         self._twist_a, self._twist_b = twists_of(self._motion)
@@ -84,7 +84,7 @@ class FrameBuffer:
     motion = property(lambda self: self._motion, doc="(36,) all four, one after the other.")
     state = property(lambda self: self._state, doc="The warm start, changed in place.")
     out = property(lambda self: self._out, doc="The answer, as kernels.state.arrays lays it out.")
-    events = property(lambda self: Block(self._block).events, doc="The log of switches, flat.")
+    events = property(lambda self: FrameBlock(self._block).events, doc="The log of switches, flat.")
     distance = property(lambda self: self._block.item(K.DISTANCE), doc="Signed, as in Proximity.")
     lower_bound = property(
         lambda self: self._block.item(K.LOWER_BOUND), doc="Certified lower bound of the distance."
@@ -111,14 +111,16 @@ class FrameBuffer:
 
     def proximity(self) -> Proximity:
         """The last answer as a value."""
-        return Proximity(self.reached.a, self.reached.b, Block(self._block).kept(), self.repaired)
+        return Proximity(
+            self.reached.a, self.reached.b, FrameBlock(self._block).kept(), self.repaired
+        )
 
     def step(self, h: float) -> float:
         """The distance of a frame with the poses and twists in the buffer, h seconds after the
         last."""
         data = self._block
         data[K.BLOCK_TIME_STEP], data[K.BLOCK_HAS_TWIST] = h, self.has_twist
-        self.repaired = step_in(self.reached.table, Block(data))
+        self.repaired = step_in(self.reached.table, FrameBlock(data))
         return data.item(K.DISTANCE)
 
     def step_to(self, given: Given, h: float) -> float:
@@ -138,7 +140,7 @@ class FrameBuffer:
         if done == K.BAD_ARRAYS:
             return self.step_anew(given, h)
         if done != K.FINE:
-            self.repaired += step_in(self.reached.table, Block(self._block))
+            self.repaired += step_in(self.reached.table, FrameBlock(self._block))
         return self._block.item(K.DISTANCE)
 
     def step_anew(self, given: Given, h: float) -> float:

@@ -11,7 +11,7 @@ from standoff.kernels.compiler.entry import WrongKind
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.entries.tracker import query_anywhere
 from standoff.kernels.state import arrays as K
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.inputs import mend, motion_of, plain
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.reached import AddressTable
@@ -38,26 +38,26 @@ def found_anywhere(bodies: tuple[Body, Body], table: AddressTable, given: Given)
     return Proximity(*bodies, block, repaired)
 
 
-def started(table: AddressTable, given: Given, data: Any, how: int) -> tuple[Block, int]:
+def started(table: AddressTable, given: Given, data: Any, how: int) -> tuple[FrameBlock, int]:
     """A start from the places in a state's data: its block, and how many poses were repaired.
 
     Raises StandoffError: no pose or twist, or a planar pair out of its plane.
     """
     motion, has_twist, repaired = motion_of(*given)
-    block = Block.empty(data, motion, 0.0, has_twist)
+    block = FrameBlock.empty(data, motion, 0.0, has_twist)
     while (done := kernels.start_anywhere(table.address, block.data, how)) != K.FINE:
         repaired += mend(done, block.motion)
     return block, repaired
 
 
-def stepped(table: AddressTable, given: Given, data: Any, h: float) -> tuple[Block, int]:
+def stepped(table: AddressTable, given: Given, data: Any, h: float) -> tuple[FrameBlock, int]:
     """A frame from a state's data (its warm start), as `started`."""
     motion, has_twist, repaired = motion_of(*given)
-    block = Block.empty(data, motion, h, has_twist)
+    block = FrameBlock.empty(data, motion, h, has_twist)
     return block, repaired + step_in(table, block)
 
 
-def step_in(table: AddressTable, block: Block) -> int:
+def step_in(table: AddressTable, block: FrameBlock) -> int:
     """A frame in a long block; how many of its poses were repaired in it."""
     repaired = 0
     while (done := kernels.step(table.address, block.data)) != K.FINE:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @runtime_checkable
-class Pictured(Protocol):
+class MakesPicture(Protocol):
     """What is no `Body`, and makes the picture of itself with another: a solid."""
 
     def pictured(
@@ -67,7 +67,7 @@ def plot(
     -------
     matplotlib.figure.Figure
     """
-    solid = next((each for each in (a, b) if isinstance(each, Pictured)), None)
+    solid = next((each for each in (a, b) if isinstance(each, MakesPicture)), None)
     if solid is not None:
         return _of_solids(solid, (a, b, answer), path, (view_angles(view), str(unit)))
     bodies: tuple[Any, Any] = (a, b)
@@ -79,10 +79,10 @@ def plot(
     angles = view_angles(view)
     poses = _poses(bodies, answer)
     from standoff.bodies.drawing.files import drawn
-    from standoff.bodies.drawing.pair_picture import Shown, pair_figure
+    from standoff.bodies.drawing.pair_picture import DrawnAnswer, pair_figure
     from standoff.bodies.drawing.solids import solid_of
 
-    marks = Shown(
+    marks = DrawnAnswer(
         poses,
         (answer.point_a, answer.point_b),
         answer.normal,
@@ -96,7 +96,7 @@ def plot(
 
 
 def _of_solids(
-    solid: Pictured, asked: tuple[Any, Any, Any], path: Any, look: tuple[Any, str]
+    solid: MakesPicture, asked: tuple[Any, Any, Any], path: Any, look: tuple[Any, str]
 ) -> Figure:
     from standoff.bodies.drawing.files import drawn
 

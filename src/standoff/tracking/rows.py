@@ -17,7 +17,7 @@ from standoff.bodies.features import Feature, charts_of, feature_of
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.read_only import KeepsReadOnly
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.status import Status
 from standoff.typing import Array
 
@@ -258,7 +258,7 @@ class Answer(KeepsReadOnly):
             or self._out[K.BLOCK_MOTION + K.POSE_A] != self._out[K.BLOCK_MOTION + K.POSE_A]
         ):
             return None
-        return poses_of(Block(self._out).motion)
+        return poses_of(FrameBlock(self._out).motion)
 
     @property
     def distance(self) -> float:

@@ -15,7 +15,7 @@ from standoff.kernels.pair.polytope_layout import N_POLYTOPE
 from standoff.kernels.state import arrays as K
 from standoff.motion import Pose, Twist
 from standoff.tracking.answers import Answers
-from standoff.tracking.block import Block, with_polytope
+from standoff.tracking.block import FrameBlock, with_polytope
 from standoff.tracking.inputs import ABSENT, flat_twist
 from standoff.tracking.pose_arrays import another_order, mended, numbers, read_poses
 from standoff.tracking.proximity import Proximity
@@ -183,7 +183,7 @@ def run(
 
 def take_polytope(polytope: Array, answer: Proximity) -> None:
     """Take over the polytope that an answer has kept, or none."""
-    kept = Block(answer._out).polytope
+    kept = FrameBlock(answer._out).polytope
     polytope[:] = kept if len(kept) else 0.0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from standoff.read_only import KeepsReadOnly
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.proximity import Proximity
 from standoff.tracking.rows import StateRow
 from standoff.typing import Array
@@ -38,13 +38,13 @@ class TrackerState(KeepsReadOnly):
 
     @property
     def data(self) -> Array:
-        return Block(self._proximity._out).state
+        return FrameBlock(self._proximity._out).state
 
     @property
     def warm_start(self) -> Array:
         """``data``, followed by what a frame in penetration has kept of its proof: a polytope that
         the next frame moves with the bodies and tries first; then (566,)."""
-        return Block(self._proximity._out).warm_start
+        return FrameBlock(self._proximity._out).warm_start
 
     @property
     def time(self) -> float:

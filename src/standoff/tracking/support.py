@@ -8,7 +8,7 @@ from standoff.bodies import shapes
 from standoff.bodies.body import Body
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
-from standoff.tracking.calls import Frame, start
+from standoff.tracking.calls import FrameInput, start
 from standoff.tracking.inputs import flat_pose
 from standoff.tracking.laws import DEFAULT_LAW
 from standoff.tracking.options import pack_options
@@ -45,6 +45,6 @@ def support_point(body: Body, direction: Array) -> Array:
         x = np.cross(np.eye(3)[int(np.abs(n).argmin())], n)
         x /= np.linalg.norm(x)
         facing = np.column_stack([x, np.cross(-n, x), -n])
-    frame = Frame(flat_pose(Pose.identity()), flat_pose(Pose(facing, position)))
+    frame = FrameInput(flat_pose(Pose.identity()), flat_pose(Pose(facing, position)))
     found, _ = start(table_of(body, wall, pack_options(DEFAULT_LAW)), frame, StateRow())
     return np.asarray(found.point_a - body.radius * found.normal)

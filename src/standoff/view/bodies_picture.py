@@ -11,7 +11,7 @@ from standoff.motion import Pose
 from standoff.typing import Array
 from standoff.view.nodes import BodyNodes, Colour, quaternion
 from standoff.view.picture import Aimable, aim_all
-from standoff.view.shapes import Shape, shape_of
+from standoff.view.shapes import ShownShape, shape_of
 from standoff.world.packed import pieces_of
 from standoff.world.shapes import is_bounded
 
@@ -54,7 +54,7 @@ class BodiesPicture(Aimable):
         scene = server.scene
         scene.reset()
         scene.configure_default_lights(cast_shadow=False)
-        shapes: dict[int, Shape] = {}
+        shapes: dict[int, ShownShape] = {}
         self._bodies = [
             _Drawn(scene, f"/body_{k}", body, colour, shapes)
             for k, (body, colour) in enumerate(zip(bodies, colours, strict=True))
@@ -104,7 +104,7 @@ class _Drawn:
         name: str,
         body: Any,
         colours: tuple[Colour, Colour],
-        shapes: dict[int, Shape],
+        shapes: dict[int, ShownShape],
     ) -> None:
         self.frame = scene.add_frame(name, show_axes=False)
         self._pieces = []

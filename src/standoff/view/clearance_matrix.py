@@ -35,7 +35,7 @@ SMALLEST = 5.0
 """Height of a number in pixels below which it is left out: the cell says it when pointed at."""
 
 
-class Cell(NamedTuple):
+class PairCell(NamedTuple):
     """What is known of a pair.
 
     Attributes
@@ -79,7 +79,7 @@ def drawn_bodies(answer: WorldAnswer) -> list[str]:
     return [name for name in names if name in chosen]
 
 
-def cells_of(answer: WorldAnswer, names: Sequence[str]) -> dict[NamePair, Cell]:
+def cells_of(answer: WorldAnswer, names: Sequence[str]) -> dict[NamePair, PairCell]:
     """Return the cell of each pair of these bodies that counts.
 
     Parameters
@@ -95,7 +95,7 @@ def cells_of(answer: WorldAnswer, names: Sequence[str]) -> dict[NamePair, Cell]:
             if rules.counts(body(first, "pair"), body(second, "pair")):
                 pair = answer[first, second]
                 gap = pair.lower_bound if pair.far else pair.distance
-                found[first, second] = Cell(verdict_of(pair), gap, pair.far)
+                found[first, second] = PairCell(verdict_of(pair), gap, pair.far)
     return found
 
 
@@ -140,7 +140,12 @@ def matrix_picture(answer: WorldAnswer, unit: str, end: float) -> str:
 
 
 def _drawn(
-    cell: Cell | None, names: NamePair, at: tuple[float, float], side: float, unit: str, end: float
+    cell: PairCell | None,
+    names: NamePair,
+    at: tuple[float, float],
+    side: float,
+    unit: str,
+    end: float,
 ) -> str:
     x, y = at
     if cell is None:
@@ -164,7 +169,7 @@ def _drawn(
     return f'<g class="{kind}">{square}{number}{_told(names, cell.told(unit))}</g>'
 
 
-def _colour(cell: Cell, end: float) -> tuple[int, ...]:
+def _colour(cell: PairCell, end: float) -> tuple[int, ...]:
     if cell.far:
         return FAR
     if cell.verdict in OF_VERDICT:
@@ -197,7 +202,7 @@ def _text(text: str, x: float, y: float, more: str = "") -> str:
     )
 
 
-def _legend(cells: Mapping[NamePair, Cell], unit: str, end: float, y: float) -> str:
+def _legend(cells: Mapping[NamePair, PairCell], unit: str, end: float, y: float) -> str:
     """A line that says what the colours are: those that there are."""
     stops = "".join(
         f'<stop offset="{k / (len(STOPS) - 1):.2f}" stop-color="{css(stop)}"/>'

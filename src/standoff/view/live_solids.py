@@ -90,7 +90,7 @@ class LiveSolids:
         return self.answer
 
 
-class Known(NamedTuple):
+class SolidPlotPoint(NamedTuple):
     """What the plot shows of a frame.
 
     Attributes
@@ -103,12 +103,12 @@ class Known(NamedTuple):
     lower_bound: float
 
 
-def known_of(answer: SolidProximity) -> Known:
+def known_of(answer: SolidProximity) -> SolidPlotPoint:
     """Return what the plot shows of an answer."""
     bound = answer.lower_bound
     if not np.isfinite(bound) and answer.minima:
         bound = answer.minima[0].lower_bound
-    return Known(answer.distance, bound)
+    return SolidPlotPoint(answer.distance, bound)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ class SolidCourse:
     poses : sequence of (Pose, Pose)
     answers : SolidAnswers
     distance, lower_bound : (n,) arrays
-        As in `Known`.
+        As in `SolidPlotPoint`.
     """
 
     time: Array

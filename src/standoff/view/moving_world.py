@@ -109,7 +109,7 @@ def moving_world(world: World, given: Any, duration: float | None = None) -> Mov
     )
 
 
-class Known(NamedTuple):
+class WorldPlotPoint(NamedTuple):
     """What the plot shows of a frame: both end at the horizon.
 
     Attributes
@@ -124,20 +124,20 @@ class Known(NamedTuple):
     lower_bound: float
 
 
-def known_of(answer: WorldAnswer) -> Known:
+def known_of(answer: WorldAnswer) -> WorldPlotPoint:
     """Return what the plot shows of an answer."""
     least = float(answer.pairs.distance.min(initial=np.inf))
-    return Known(min(least, answer.model.search.reach), answer.clearance)
+    return WorldPlotPoint(min(least, answer.model.search.reach), answer.clearance)
 
 
-class Course(NamedTuple):
+class WorldCourse(NamedTuple):
     """The clearance of a world over its frames.
 
     Attributes
     ----------
     time : (m,) array
     distance, lower_bound : (m,) arrays
-        As in `Known`.
+        As in `WorldPlotPoint`.
     """
 
     time: Array
@@ -145,7 +145,7 @@ class Course(NamedTuple):
     lower_bound: Array
 
 
-def course_of(given: MovingWorld) -> Course:
+def course_of(given: MovingWorld) -> WorldCourse:
     """Return the course of a world that moves by itself.
 
     Raises StandoffError: what `World.step` refuses.
@@ -157,7 +157,7 @@ def course_of(given: MovingWorld) -> Course:
         state, answer = world.step(state, given.poses(time), dt=time - before)
         known.append(known_of(answer))
     distance, bound = np.array(known).T
-    return Course(times, distance, bound)
+    return WorldCourse(times, distance, bound)
 
 
 class LiveWorld:

@@ -11,7 +11,7 @@ import trimesh
 from standoff.bodies.features import Feature
 from standoff.motion import Pose
 from standoff.typing import Array
-from standoff.view.shapes import Mesh, Shape
+from standoff.view.shapes import ShownShape, ShownTriangles
 
 Colour = tuple[int, int, int]
 
@@ -59,7 +59,7 @@ class BodyNodes:
     scene : viser.SceneApi
     name : str
         Of the node that all others hang from.
-    shape : Shape
+    shape : ShownShape
     colours : (Colour, Colour)
         Light and strong.
     corners : bool
@@ -70,7 +70,7 @@ class BodyNodes:
         self,
         scene: Any,
         name: str,
-        shape: Shape,
+        shape: ShownShape,
         colours: tuple[Colour, Colour],
         *,
         corners: bool = True,
@@ -125,7 +125,7 @@ class BodyNodes:
 
     def _drawn(self, feature: Feature) -> Any:
         part = self._shape.of(feature)
-        if isinstance(part, Mesh):
+        if isinstance(part, ShownTriangles):
             if not len(part.points):
                 return None
             if self._glass:
@@ -135,7 +135,7 @@ class BodyNodes:
             return self._lines("active", part, self._strong, 5.0)
         return self._points("active", part[None], self._strong, 2.0)
 
-    def _mesh(self, name: str, mesh: Mesh, colour: Colour, opacity: float) -> Any:
+    def _mesh(self, name: str, mesh: ShownTriangles, colour: Colour, opacity: float) -> Any:
         return self._scene.add_mesh_simple(
             f"{self.name}/{name}",
             mesh.points,
@@ -147,7 +147,7 @@ class BodyNodes:
             receive_shadow=False,
         )
 
-    def _pane(self, name: str, mesh: Mesh, colour: Colour, opacity: float) -> Any:
+    def _pane(self, name: str, mesh: ShownTriangles, colour: Colour, opacity: float) -> Any:
         # Viser's own meshes hide what is behind them, however clear they are: three.js draws them
         # into the buffer of depths. It does not for a material of glTF that blends.
         material = trimesh.visual.material.PBRMaterial(

@@ -18,7 +18,7 @@ from standoff.recording import Recording
 from standoff.scene import Scene, load_scene
 from standoff.scene.file_content import is_simulation
 from standoff.scene.motions import Motion
-from standoff.scene.pairs import Pair
+from standoff.scene.pairs import PairOfScene
 from standoff.scene.settings import TrackSettings
 from standoff.view.minima_asked import MinimaAsked
 from standoff.view.moving_world import MovingWorld, moving_world, world_of_scene
@@ -211,7 +211,7 @@ def _pair(a: Any, b: Any) -> tuple[Shape, Shape] | None:
 
 
 @dataclass(frozen=True)
-class _Stretch:
+class _PathStretch:
     """A path between two times."""
 
     path: Any
@@ -251,7 +251,8 @@ def scene_of(recording: Recording) -> Scene:
         )
     first, last = (float(recording.time[k]) for k in (0, -1))
     ends = [
-        path if isinstance(path, Fixed) else _Stretch(path, first, last) for path in recording.paths
+        path if isinstance(path, Fixed) else _PathStretch(path, first, last)
+        for path in recording.paths
     ]
     step = float(np.diff(recording.time).max())
     settings = TrackSettings(recording.info.law, step, first, last - first)
@@ -271,7 +272,7 @@ def _made(
     names = [body.name for body in bodies]
     if names[0] == names[1]:
         names = [f"{names[0]} {which}" for which in "AB"]
-    pair = Pair("pair", names[0], names[1], settings)
+    pair = PairOfScene("pair", names[0], names[1], settings)
     motions = [Motion(path, "path", np.zeros(0)) for path in paths]
     return Scene(
         file=Path("run"),

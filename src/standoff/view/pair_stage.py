@@ -19,7 +19,7 @@ from standoff.view.player import Player, R
 Poses = tuple[Pose, Pose]
 
 
-class Followed(Protocol):
+class StillPair(Protocol):
     """A pair that is where it is put."""
 
     @property
@@ -38,7 +38,7 @@ class PairStage(PlayedStage[R]):
     scene : Scene
     panel : PairPanel
     picture : PairPicture
-    pair : Followed
+    pair : StillPair
         What is dragged.
     player : Player or None
         What is played; None where nothing moves by itself.
@@ -47,7 +47,7 @@ class PairStage(PlayedStage[R]):
     scene: Scene
     panel: PairPanel
     picture: PairPicture
-    pair: Followed
+    pair: StillPair
 
     def _begin(self, scene: Scene, poses: Poses) -> None:
         """Stand at a scene's poses."""

@@ -13,7 +13,7 @@ from standoff.view.pair_panel import Hands, PairPanel
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE
 from standoff.view.readout import readout
-from standoff.view.shown import Shown
+from standoff.view.shown import ShownPair
 
 LOGGED = 12
 """Newest switches that the log shows."""
@@ -23,7 +23,7 @@ LOG = '<table style="font-size:.8em;margin:.3em .9em;border-spacing:.6em 0">{}</
 NONE_YET = '<div style="font-size:.8em;margin:.5em .9em;opacity:.65">no switch yet</div>'
 
 
-class Asks(Hands, Protocol):
+class PairRequests(Hands, Protocol):
     """What a user of the page can ask for; each is done between two looks of the page's thread."""
 
     def pull(self, on: bool) -> None: ...
@@ -39,7 +39,7 @@ class Panel(PairPanel):
     Parameters
     ----------
     server, later : as for `MotionPanel`
-    asks : Asks
+    asks : PairRequests
     titles : sequence of str
         Of the scenes that can be opened.
     """
@@ -48,11 +48,11 @@ class Panel(PairPanel):
         self,
         server: Any,
         later: Later,
-        asks: Asks,
+        asks: PairRequests,
         titles: Sequence[str],
     ) -> None:
         super().__init__(server, later, asks)
-        self._asks: Asks = asks
+        self._asks: PairRequests = asks
         self._log: deque[str] = deque(maxlen=LOGGED)
         tabs = server.gui.add_tab_group()
         with tabs.add_tab("Move"):
@@ -162,11 +162,11 @@ class Panel(PairPanel):
         self._log.appendleft(row)
         self._switches.content = LOG.format("".join(self._log))
 
-    def show(self, shown: Shown, force: float | None = None) -> None:
+    def show(self, shown: ShownPair, force: float | None = None) -> None:
         """Show the numbers of an instant; `force` [N] of the coupler where it pulls."""
         self._readout.content = readout(shown, self._names, self._unit, self._size, force)
         self._plot.stands(shown)
 
-    def traces(self, time: float, shown: Shown) -> None:
+    def traces(self, time: float, shown: ShownPair) -> None:
         """Add an instant of a body that is moved by hand to the plot."""
         self._plot.traces(time, shown)

@@ -12,8 +12,8 @@ from standoff.motion import Pose
 from standoff.typing import Array
 from standoff.view.nodes import COLOURS, AnswerNodes, BodyNodes, quaternion
 from standoff.view.readout import beside
-from standoff.view.shapes import Shape, shape_of
-from standoff.view.shown import Shown
+from standoff.view.shapes import ShownShape, shape_of
+from standoff.view.shown import ShownPair
 from standoff.view.tolerances import SEEN_INTO
 
 GRIP = 0.5
@@ -90,7 +90,7 @@ class PairPicture(Aimable):
         scene.reset()
         scene.configure_default_lights(cast_shadow=False)
         self.planar = any(body.dimension == 2 for body in bodies)
-        self.shapes: tuple[Shape, Shape] = shape_of(bodies[0]), shape_of(bodies[1])
+        self.shapes: tuple[ShownShape, ShownShape] = shape_of(bodies[0]), shape_of(bodies[1])
         self._bodies = [
             BodyNodes(scene, f"/{which}", shape, COLOURS[number], corners=corners)
             for number, (which, shape) in enumerate(zip("AB", self.shapes, strict=True))
@@ -155,12 +155,12 @@ class Picture(PairPicture):
         """Draw the coupler's force on a tool; see `AnswerNodes.pull`."""
         self._answer.pull(at, force, greatest)
 
-    def show(self, shown: Shown, note: str = "", *, held: int | None = None) -> None:
+    def show(self, shown: ShownPair, note: str = "", *, held: int | None = None) -> None:
         """Draw what is shown at an instant.
 
         Parameters
         ----------
-        shown : Shown
+        shown : ShownPair
         note : str
             Stands before the distance.
         held : int, optional

@@ -10,7 +10,7 @@ SPEEDS = {"×0.1": 0.1, "×0.25": 0.25, "×0.5": 0.5, "×1": 1.0, "×2": 2.0, "�
 """How much faster than its own time a recording is played, by the words of the page."""
 
 
-class Recorded(Protocol):
+class Playable(Protocol):
     """Frames that can be played: a recording of a pair, the course of a world, or a simulation."""
 
     @property
@@ -18,7 +18,7 @@ class Recorded(Protocol):
         """(n,) array [s]."""
 
 
-R = TypeVar("R", bound=Recorded)
+R = TypeVar("R", bound=Playable)
 
 
 class Player(Generic[R]):
@@ -26,7 +26,7 @@ class Player(Generic[R]):
 
     Parameters
     ----------
-    recording : Recorded
+    recording : Playable
 
     Attributes
     ----------

@@ -9,7 +9,7 @@ import numpy as np
 
 from standoff.tracking import Status
 from standoff.view.nodes import COLOURS as BODY_COLOURS
-from standoff.view.shown import Shown
+from standoff.view.shown import ShownPair
 from standoff.view.tolerances import SAID_TO_TOUCH
 from standoff.wording import at_least, at_most
 
@@ -48,7 +48,7 @@ def upper(bound: float, unit: str, digits: int = DIGITS) -> str:
     return f"{at_most(bound, digits)} {unit}".rstrip() if np.isfinite(bound) else "not known"
 
 
-class Known(Protocol):
+class PairFacts(Protocol):
     """What a sentence says of two bodies."""
 
     @property
@@ -64,12 +64,12 @@ class Known(Protocol):
         """How far that is proven."""
 
 
-def verdict(answer: Known, unit: str, size: float) -> str:
+def verdict(answer: PairFacts, unit: str, size: float) -> str:
     """Return in a sentence how far apart the bodies are, and how far that is proven.
 
     Parameters
     ----------
-    answer : Known
+    answer : PairFacts
     unit : str
         Label of lengths.
     size : float
@@ -106,7 +106,7 @@ _UNPROVEN = {
 }
 
 
-def beside(answer: Known, unit: str, size: float) -> str:
+def beside(answer: PairFacts, unit: str, size: float) -> str:
     """Return what stands beside the witness line: the verdict without its proof.
 
     Parameters
@@ -121,13 +121,13 @@ def beside(answer: Known, unit: str, size: float) -> str:
 
 
 def readout(
-    answer: Shown, names: tuple[str, str], unit: str, size: float, force: float | None = None
+    answer: ShownPair, names: tuple[str, str], unit: str, size: float, force: float | None = None
 ) -> str:
     """Return the sentence and the table of an answer, as HTML.
 
     Parameters
     ----------
-    answer : Shown
+    answer : ShownPair
     names : (str, str)
         Of A and B.
     unit : str
@@ -163,7 +163,7 @@ def readout(
     )
 
 
-def _bound(answer: Shown, unit: str, size: float) -> str:
+def _bound(answer: ShownPair, unit: str, size: float) -> str:
     """The lower bound; of one that is all but 0 the digits are roundoff."""
     bound = answer.lower_bound
     return lower(bound, unit, DIGITS if abs(bound) > SAID_TO_TOUCH * size else 2)

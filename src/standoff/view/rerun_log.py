@@ -12,7 +12,7 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, of_extra
 from standoff.recording import Recording
 from standoff.view.nodes import COLOURS, EDGE_COLOUR, WITNESS_COLOUR, Colour
-from standoff.view.shapes import Mesh, Shape, shape_of
+from standoff.view.shapes import ShownShape, ShownTriangles, shape_of
 from standoff.view.shown import of_frame, what_moved
 from standoff.view.tolerances import MOST_LOGGED
 from standoff.whole_files import file_name, write_whole
@@ -76,7 +76,7 @@ def write_rerun(recording: Recording, file: BinaryIO) -> None:
     file.write(content)
 
 
-def _log_body(log: Any, which: str, shape: Shape, colour: Colour) -> None:
+def _log_body(log: Any, which: str, shape: ShownShape, colour: Colour) -> None:
     if shape.skin is not None:
         mesh = rerun.Mesh3D(
             vertex_positions=shape.skin.points,
@@ -91,7 +91,11 @@ def _log_body(log: Any, which: str, shape: Shape, colour: Colour) -> None:
 
 
 def _log_frame(
-    log: Any, recording: Recording, frame: int, shapes: tuple[Shape, Shape], before: list[Any]
+    log: Any,
+    recording: Recording,
+    frame: int,
+    shapes: tuple[ShownShape, ShownShape],
+    before: list[Any],
 ) -> None:
     now = of_frame(recording, frame)
     log.set_time(CLOCK, duration=float(recording.time[frame]))
@@ -117,9 +121,9 @@ def _log_frame(
         log.log("witness", rerun.Clear(recursive=True))
 
 
-def _active(shape: Shape, feature: Feature, colour: Colour) -> Any:
+def _active(shape: ShownShape, feature: Feature, colour: Colour) -> Any:
     found = shape.of(feature)
-    if isinstance(found, Mesh):
+    if isinstance(found, ShownTriangles):
         return rerun.Mesh3D(
             vertex_positions=found.points,
             triangle_indices=found.triangles,
@@ -131,7 +135,7 @@ def _active(shape: Shape, feature: Feature, colour: Colour) -> Any:
     return rerun.LineStrips3D(found, colors=colour)
 
 
-def _normals(mesh: Mesh) -> Any:
+def _normals(mesh: ShownTriangles) -> Any:
     """Of each point, the sum of its triangles' normals."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -21,7 +21,7 @@ DIRECTIONS = 1500
 """Directions in which the skin of a swept body is drawn."""
 
 
-class Mesh(NamedTuple):
+class ShownTriangles(NamedTuple):
     """Triangles: points (n, 3) and the numbers of their corners (m, 3)."""
 
     points: Array
@@ -29,13 +29,13 @@ class Mesh(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Shape:
+class ShownShape:
     """A body as it is shown.
 
     Attributes
     ----------
     body : Boundary or PlanarSolid
-    skin : Mesh or None
+    skin : ShownTriangles or None
         The whole surface; None of a planar body, and of a point or segment without a radius.
     faces : dict of int to Mesh
         Of each face, swept radius included and a little off the skin.
@@ -51,8 +51,8 @@ class Shape:
     """
 
     body: Boundary | PlanarSolid
-    skin: Mesh | None
-    faces: dict[int, Mesh]
+    skin: ShownTriangles | None
+    faces: dict[int, ShownTriangles]
     edges: dict[int, Array]
     drawn: tuple[int, ...]
     vertices: Array
@@ -69,19 +69,21 @@ class Shape:
         pieces = [_pieces(self.edges[number]) for number in self.drawn]
         return np.concatenate(pieces) if pieces else np.zeros((0, 2, 3))
 
-    def of(self, feature: Feature) -> Mesh | Array:
+    def of(self, feature: Feature) -> ShownTriangles | Array:
         """Return what is highlighted of a feature: triangles, pieces of line, or one point (3,)."""
         if feature.kind == "face":
-            return self.faces.get(feature.index, Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)))
+            return self.faces.get(
+                feature.index, ShownTriangles(np.zeros((0, 3)), np.zeros((0, 3), int))
+            )
         if feature.kind == "edge":
             return _pieces(self.edges[feature.index])
         if not feature.kind:  # beyond the horizon
-            return Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+            return ShownTriangles(np.zeros((0, 3)), np.zeros((0, 3), int))
         point: Array = self.vertices[feature.index]
         return point
 
 
-def shape_of(given: Any) -> Shape:
+def shape_of(given: Any) -> ShownShape:
     """Return what is shown of a body.
 
     Parameters
@@ -104,7 +106,7 @@ def shape_of(given: Any) -> Shape:
     size = float(np.linalg.norm(high - low)) or 1.0
     swept = body.radius > 0.0 and body.dimension == 3
     skin = _swept(points, body.radius) if swept else _joined(meshes)
-    return Shape(
+    return ShownShape(
         body,
         skin,
         {face: _lifted(meshes, face, body.radius, LIFT * size) for face in range(body.n_faces)},
@@ -117,48 +119,48 @@ def shape_of(given: Any) -> Shape:
     )
 
 
-def _flat_shape(solid: PlanarSolid) -> Shape:
+def _flat_shape(solid: PlanarSolid) -> ShownShape:
     """Of a planar solid its edges, as of any planar body."""
     lines = [line for loop in solid.loops for line in points_along(loop)]
     low, high = np.min([x.min(0) for x in lines], 0), np.max([x.max(0) for x in lines], 0)
     edges = dict(enumerate(lines))
     vertices = np.array([line[0] for line in lines])
     size, middle = float(np.linalg.norm(high - low)), 0.5 * (low + high)
-    return Shape(solid, None, {}, edges, tuple(edges), vertices, size, middle)
+    return ShownShape(solid, None, {}, edges, tuple(edges), vertices, size, middle)
 
 
 def _pieces(points: Array) -> Array:
     return np.stack([points[:-1], points[1:]], axis=1)
 
 
-def _joined(meshes: list[FaceMesh]) -> Mesh | None:
+def _joined(meshes: list[FaceMesh]) -> ShownTriangles | None:
     if not meshes:
         return None
     firsts = np.cumsum([0, *(len(mesh.points) for mesh in meshes[:-1])])
     triangles = [mesh.triangles + k for mesh, k in zip(meshes, firsts, strict=True)]
-    whole = Mesh(np.concatenate([m.points for m in meshes]), np.concatenate(triangles))
+    whole = ShownTriangles(np.concatenate([m.points for m in meshes]), np.concatenate(triangles))
     return _outward(whole, np.concatenate([mesh.normals for mesh in meshes]))
 
 
-def _outward(mesh: Mesh, normals: Array) -> Mesh:
+def _outward(mesh: ShownTriangles, normals: Array) -> ShownTriangles:
     """The same triangles, each counterclockwise as seen from outside."""
     corners = mesh.points[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     turned = np.einsum("ij,ij->i", across, normals[mesh.triangles].sum(axis=1)) < 0.0
     triangles = np.where(turned[:, None], mesh.triangles[:, ::-1], mesh.triangles)
-    return Mesh(mesh.points, triangles)
+    return ShownTriangles(mesh.points, triangles)
 
 
-def _lifted(meshes: list[FaceMesh], face: int, radius: float, lift: float) -> Mesh:
+def _lifted(meshes: list[FaceMesh], face: int, radius: float, lift: float) -> ShownTriangles:
     own = [mesh for mesh in meshes if mesh.face == face]
     whole = _joined(own)
     if whole is None:
-        return Mesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
+        return ShownTriangles(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
     normals = np.concatenate([mesh.normals for mesh in own])
-    return Mesh(whole.points + (radius + lift) * normals, whole.triangles)
+    return ShownTriangles(whole.points + (radius + lift) * normals, whole.triangles)
 
 
-def _swept(cloud: Array, radius: float) -> Mesh:
+def _swept(cloud: Array, radius: float) -> ShownTriangles:
     """The farthest point of the swept body in each of many directions, and their hull."""
     k = np.arange(DIRECTIONS) + 0.5
     height, turn = 1.0 - 2.0 * k / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
@@ -167,4 +169,4 @@ def _swept(cloud: Array, radius: float) -> Mesh:
     points = cloud[(normals @ cloud.T).argmax(axis=1)] + radius * normals
     # QJ: many of them lie in the planes of flat faces.
     triangles = scipy.spatial.ConvexHull(points, qhull_options="QJ").simplices.astype(np.int64)
-    return _outward(Mesh(points, triangles), normals)
+    return _outward(ShownTriangles(points, triangles), normals)

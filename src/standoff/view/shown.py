@@ -14,7 +14,7 @@ from standoff.tracking import Proximity, Status
 from standoff.typing import Array
 
 
-class Shown(NamedTuple):
+class ShownPair(NamedTuple):
     """Where both bodies are and what is known of their distance there.
 
     Attributes
@@ -37,7 +37,7 @@ class Shown(NamedTuple):
     status: Status
 
 
-def of_answer(answer: Proximity, poses: tuple[Pose, Pose]) -> Shown:
+def of_answer(answer: Proximity, poses: tuple[Pose, Pose]) -> ShownPair:
     """Return what is shown of an answer.
 
     Parameters
@@ -46,7 +46,7 @@ def of_answer(answer: Proximity, poses: tuple[Pose, Pose]) -> Shown:
     poses : (Pose, Pose)
         That it was asked for.
     """
-    return Shown(
+    return ShownPair(
         poses,
         (answer.point_a, answer.point_b),
         answer.normal,
@@ -57,12 +57,12 @@ def of_answer(answer: Proximity, poses: tuple[Pose, Pose]) -> Shown:
     )
 
 
-def of_frame(recording: Recording, frame: int) -> Shown:
+def of_frame(recording: Recording, frame: int) -> ShownPair:
     """Return what is shown of a frame of a recording that still has its paths."""
     assert recording.paths is not None
     time = float(recording.time[frame])
     pose_a, pose_b = (Pose.of(path.pose(time)) for path in recording.paths)
-    return Shown(
+    return ShownPair(
         (pose_a, pose_b),
         (recording.point_a[frame], recording.point_b[frame]),
         recording.normal[frame],

@@ -16,7 +16,7 @@ STRETCHES = {"×0.1": 0.1, "×0.3": 0.3, "×1": 1.0, "×3": 3.0, "×10": 10.0}
 """How much longer the arrows of forces are than usual, by the words of the page."""
 
 
-class Asks(Plays, Glazed, Protocol):
+class SimulationRequests(Plays, Glazed, Protocol):
     """What a user of the page can ask for."""
 
     def step(self) -> None: ...
@@ -30,10 +30,10 @@ class SimulationPanel(MotionPanel):
     Parameters
     ----------
     server, later : as for `MotionPanel`
-    asks : Asks
+    asks : SimulationRequests
     """
 
-    def __init__(self, server: Any, later: Later, asks: Asks) -> None:
+    def __init__(self, server: Any, later: Later, asks: SimulationRequests) -> None:
         super().__init__(server, later, asks, FORCES)
         self._asks = asks
         tabs = server.gui.add_tab_group()

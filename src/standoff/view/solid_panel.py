@@ -11,7 +11,7 @@ from standoff.view.pair_panel import Hands, PairPanel
 from standoff.view.solid_readout import minima_list, solid_readout
 
 
-class Asks(Hands, Glazed, Protocol):
+class SolidRequests(Hands, Glazed, Protocol):
     """What a user of the page can ask for."""
 
 
@@ -21,10 +21,10 @@ class SolidPanel(PairPanel):
     Parameters
     ----------
     server, later : as for `MotionPanel`
-    asks : Asks
+    asks : SolidRequests
     """
 
-    def __init__(self, server: Any, later: Later, asks: Asks) -> None:
+    def __init__(self, server: Any, later: Later, asks: SolidRequests) -> None:
         super().__init__(server, later, asks)
         tabs = server.gui.add_tab_group()
         with tabs.add_tab("Move"):

@@ -21,7 +21,7 @@ from standoff.view.picture import Picture
 from standoff.view.player import Player
 from standoff.view.pull import LEAST_FORCE, MAX_FORCE, Pull
 from standoff.view.server import name_tab
-from standoff.view.shown import Shown, of_answer, of_frame
+from standoff.view.shown import ShownPair, of_answer, of_frame
 
 
 class Stage(PairStage[Recording]):
@@ -205,7 +205,7 @@ class Stage(PairStage[Recording]):
     def _show_pair(self) -> None:
         self._show(of_answer(self.pair.answer, self.pair.poses))
 
-    def _show(self, shown: Shown) -> None:
+    def _show(self, shown: ShownPair) -> None:
         with self._server.atomic():
             pull = self._pull
             held = self._held if pull is None else pull.number

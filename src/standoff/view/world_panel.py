@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 from standoff.view.motion_panel import Later, MotionPanel, Plays
-from standoff.view.moving_world import Known
+from standoff.view.moving_world import WorldPlotPoint
 from standoff.view.player import Player
 from standoff.view.tolerances import MAX_TEXT
 
 NOTHING = "nothing"
 
 
-class Asks(Plays, Protocol):
+class WorldRequests(Plays, Protocol):
     """What a user of the page can ask for."""
 
     def hand(self, number: int | None) -> None: ...
@@ -26,7 +26,7 @@ class WorldPanel(MotionPanel):
     Parameters
     ----------
     server, later : as for `MotionPanel`
-    asks : Asks
+    asks : WorldRequests
     moving : sequence of str
         Names of the bodies that can be dragged.
     """
@@ -35,7 +35,7 @@ class WorldPanel(MotionPanel):
         self,
         server: Any,
         later: Later,
-        asks: Asks,
+        asks: WorldRequests,
         moving: Sequence[str],
     ) -> None:
         super().__init__(server, later, asks)
@@ -90,12 +90,12 @@ class WorldPanel(MotionPanel):
         """Empty the plot."""
         self._plot.forget()
 
-    def show(self, readout: str, known: Known) -> None:
+    def show(self, readout: str, known: WorldPlotPoint) -> None:
         """Show the numbers of an instant."""
         self._readout.content = readout
         self._plot.stands(known)
 
-    def traces(self, time: float, known: Known) -> None:
+    def traces(self, time: float, known: WorldPlotPoint) -> None:
         """Add an instant of bodies that are moved by hand to the plot."""
         self._plot.traces(time, known)
 

@@ -9,7 +9,7 @@ import numpy as np
 from standoff.tracking import Status
 from standoff.view.clearance_matrix import matrix_picture
 from standoff.view.motion_panel import Later
-from standoff.view.moving_world import Course, LiveWorld, MovingWorld, course_of, known_of
+from standoff.view.moving_world import LiveWorld, MovingWorld, WorldCourse, course_of, known_of
 from standoff.view.pair_stage import placed
 from standoff.view.played_stage import PlayedStage
 from standoff.view.player import Player
@@ -26,7 +26,7 @@ MOST_COUNTED = 1000
 """Bodies of a world up to which its pairs are counted, one by one: half a million."""
 
 
-class WorldStage(PlayedStage[Course]):
+class WorldStage(PlayedStage[WorldCourse]):
     """A world as a page shows it.
 
     Raises StandoffError: what the world refuses.
@@ -57,7 +57,7 @@ class WorldStage(PlayedStage[Course]):
         self.panel: WorldPanel = panel
         world = given.world
         self.live = LiveWorld(world, given.poses(float(given.times[0])))
-        self.player: Player[Course] | None = Player(course_of(given)) if given.moves else None
+        self.player: Player[WorldCourse] | None = Player(course_of(given)) if given.moves else None
         self._home = self._wanted = self._there = self.live.poses
         self._by_hand = self.player is None
         self._clock = self._since = 0.0
@@ -164,7 +164,7 @@ class WorldStage(PlayedStage[Course]):
             self.panel.forget()
             self.panel.strayed(False)
 
-    def _show_frame(self, player: Player[Course]) -> None:
+    def _show_frame(self, player: Player[WorldCourse]) -> None:
         self.live.move(self.given.poses(float(player.recording.time[player.frame])))
         self._show()
         self.panel.plays(player)

@@ -18,13 +18,13 @@ from standoff.kernels.world.tree import MOST_REFITS, N_BOX, SOUGHT_PART
 from standoff.typing import Array, Ints
 from standoff.world.packed import PackedPieces
 from standoff.world.rules import Rules
-from standoff.world.state import Tree
+from standoff.world.state import PaddedTree
 
 FIRST_ROOM = 1024
 """Pairs that a search has room for at first."""
 
 
-class Placed(NamedTuple):
+class PlacedPieces(NamedTuple):
     """Where the pieces are in a frame, as the kernels read it.
 
     Attributes
@@ -41,14 +41,14 @@ class Placed(NamedTuple):
     still: Ints
 
 
-class Table(NamedTuple):
+class PairTable(NamedTuple):
     """Pairs of pieces, sorted: integers (n, N_INTS) and numbers (n, N_KNOWN)."""
 
     ints: Ints
     known: Array
 
 
-class Search(NamedTuple):
+class BroadPhase(NamedTuple):
     """What a world's search needs that does not change."""
 
     pieces: PackedPieces
@@ -62,23 +62,25 @@ class Search(NamedTuple):
         return self.reach == math.inf
 
 
-def empty_placed(n: int) -> Placed:
+def empty_placed(n: int) -> PlacedPieces:
     """Before the first frame: nothing is still, and travel begins at 0."""
     placed = np.full((n, W.N_PLACED), np.nan)
     placed[:, W.P_TRAVEL] = 0.0
-    return Placed(placed, np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64))
+    return PlacedPieces(placed, np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64))
 
 
-def place(search: Search, poses: Array, tree: Tree, before: Array) -> tuple[Placed, int, int, int]:
+def place(
+    search: BroadPhase, poses: Array, tree: PaddedTree, before: Array
+) -> tuple[PlacedPieces, int, int, int]:
     """Where the pieces are, the first body whose pose is none (-1: all are poses), how many pieces
     have left their padded boxes, and how many are still."""
     n = len(search.pieces.owners)
-    frame = Placed(np.empty((n, W.N_PLACED)), *np.empty((2, n), dtype=np.int64))
+    frame = PlacedPieces(np.empty((n, W.N_PLACED)), *np.empty((2, n), dtype=np.int64))
     bad, left, still = kernels.place(search.pieces[:], poses, tree.boxes, before, frame[:])
     return frame, bad, left, still
 
 
-def first_tree(search: Search, frame: Placed) -> Tree:
+def first_tree(search: BroadPhase, frame: PlacedPieces) -> PaddedTree:
     """The tree of the first frame: every piece has its box and place."""
     n = len(search.pieces.owners)
     tree = _unordered(search, np.empty((n, N_BOX)))
@@ -87,15 +89,15 @@ def first_tree(search: Search, frame: Placed) -> Tree:
     return _ordered(search, frame, tree)
 
 
-def _unordered(search: Search, boxes: Array) -> Tree:
+def _unordered(search: BroadPhase, boxes: Array) -> PaddedTree:
     """Boxes of all pieces, in no leaves yet."""
     filled = int(np.count_nonzero(search.pieces.planes == 0))
     leaves = 1 << max(0, (filled - 1).bit_length()) if filled else 1
     order, leaf = np.zeros(max(filled, 1), dtype=np.int64), np.full(len(boxes), -1)
-    return Tree(boxes, np.empty((2 * leaves, N_BOX)), order, leaf, filled, 0)
+    return PaddedTree(boxes, np.empty((2 * leaves, N_BOX)), order, leaf, filled, 0)
 
 
-def pairs_of_boxes(search: Search, boxes: Array, reach: float) -> Ints:
+def pairs_of_boxes(search: BroadPhase, boxes: Array, reach: float) -> Ints:
     """The pairs of pieces (m, 2) that count and whose boxes (n, 6) come within `reach` (length) of
     each other; of a half-space all of its pairs. That of the body of lesser number stands first."""
     frame = empty_placed(len(boxes))
@@ -105,7 +107,7 @@ def pairs_of_boxes(search: Search, boxes: Array, reach: float) -> Ints:
     return found[:, [W.E_A, W.E_B]]
 
 
-def _ordered(search: Search, frame: Placed, tree: Tree) -> Tree:
+def _ordered(search: BroadPhase, frame: PlacedPieces, tree: PaddedTree) -> PaddedTree:
     """The same boxes in leaves in the order of their Morton codes, their tree made anew."""
     bounded = np.flatnonzero(search.pieces.planes == 0)
     if not len(bounded):
@@ -118,15 +120,17 @@ def _ordered(search: Search, frame: Placed, tree: Tree) -> Tree:
     leaves = len(tree.nodes) // 2
     nodes = np.empty_like(tree.nodes)
     nodes[leaves : leaves + len(order)] = tree.boxes[order]
-    made = Tree(tree.boxes, nodes, order, leaf, tree.n_filled, 0)
-    none = Placed(frame.placed, np.zeros_like(frame.sought), frame.still)
+    made = PaddedTree(tree.boxes, nodes, order, leaf, tree.n_filled, 0)
+    none = PlacedPieces(frame.placed, np.zeros_like(frame.sought), frame.still)
     kernels.pad(
         search.pieces[:], none[:], made.boxes, np.zeros(len(leaf)), made.arrays, tree.n_filled
     )
     return made
 
 
-def repadded(search: Search, frame: Placed, tree: Tree, before: Array, left: int) -> Tree:
+def repadded(
+    search: BroadPhase, frame: PlacedPieces, tree: PaddedTree, before: Array, left: int
+) -> PaddedTree:
     """New padded boxes for the pieces that have left theirs, and the tree of all."""
     ways = frame.placed[:, W.P_TRAVEL] - before[:, W.P_TRAVEL]
     boxes = tree.boxes.copy()
@@ -139,7 +143,9 @@ def repadded(search: Search, frame: Placed, tree: Tree, before: Array, left: int
     return made
 
 
-def table_of(search: Search, frame: Placed, tree: Tree, old: Table) -> Table:
+def table_of(
+    search: BroadPhase, frame: PlacedPieces, tree: PaddedTree, old: PairTable
+) -> PairTable:
     """The pairs after the pieces that are sought have found theirs."""
     found = _found(search, frame, tree)
     room = len(old.ints) + len(found)
@@ -149,10 +155,10 @@ def table_of(search: Search, frame: Placed, tree: Tree, old: Table) -> Table:
     n = kernels.merged(
         search.pieces[:], frame[:], old[:], found, margins, search.within, (ints, known)
     )
-    return Table(ints[:n].copy(), known[:n].copy())
+    return PairTable(ints[:n].copy(), known[:n].copy())
 
 
-def _found(search: Search, frame: Placed, tree: Tree) -> Ints:
+def _found(search: BroadPhase, frame: PlacedPieces, tree: PaddedTree) -> Ints:
     """What the search finds, sorted."""
     rules, room = search.rules[:3], FIRST_ROOM
     while True:

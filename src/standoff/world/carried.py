@@ -12,16 +12,16 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.kernels.world import arrays as W
 from standoff.typing import Array, Ints
-from standoff.world.broad_phase import Table, empty_placed
+from standoff.world.broad_phase import PairTable, empty_placed
 from standoff.world.given import mapping_of, names_of
 from standoff.world.model import Model
 from standoff.world.poses import GivenPoses, read_poses_of
-from standoff.world.rules import Given
+from standoff.world.rules import PairRules
 from standoff.world.state import KeptSolids, WorldState
 
 
 def changed_arguments(
-    given: Given, arguments: Mapping[str, Any], add: Any, remove: Any
+    given: PairRules, arguments: Mapping[str, Any], add: Any, remove: Any
 ) -> dict[str, Any]:
     """The arguments of a world with some bodies more and without others.
 
@@ -48,7 +48,7 @@ def changed_arguments(
     }
 
 
-def given_without(given: Given, gone: Collection[str]) -> Given:
+def given_without(given: PairRules, gone: Collection[str]) -> PairRules:
     """What the user says of pairs, without the bodies that are gone and the groups of these
     alone."""
     left = {name: [x for x in members if x not in gone] for name, members in given.groups.items()}
@@ -57,7 +57,7 @@ def given_without(given: Given, gone: Collection[str]) -> Given:
     def stays(pair: Iterable[str]) -> bool:
         return out.isdisjoint(pair)
 
-    return Given(
+    return PairRules(
         {name: members for name, members in left.items() if members},
         tuple(filter(stays, given.ignore)),
         None if given.only is None else tuple(filter(stays, given.only)),
@@ -119,7 +119,7 @@ def carried_rows(n: int, before: WorldState, numbers: Ints) -> Array:
 
 def carried_table(
     world: Model, before: WorldState, numbers: Ints, keeps_rows: bool
-) -> tuple[Table, KeptSolids]:
+) -> tuple[PairTable, KeptSolids]:
     """What an old state knows of the pairs that a new world has too.
 
     The answer of a pair is kept where `keeps_rows`, or one body is a solid, and its bodies stand in
@@ -150,4 +150,4 @@ def carried_table(
         {},
         {keys[key]: fronts[key] for key in keys.keys() & fronts.keys()},
     )
-    return Table(ints[order], known[order]), kept
+    return PairTable(ints[order], known[order]), kept

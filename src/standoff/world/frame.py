@@ -10,8 +10,8 @@ from standoff.progress import Progress
 from standoff.tracking.answers import proven
 from standoff.typing import Array
 from standoff.world.broad_phase import (
-    Placed,
-    Table,
+    PairTable,
+    PlacedPieces,
     empty_placed,
     first_tree,
     place,
@@ -20,14 +20,14 @@ from standoff.world.broad_phase import (
 )
 from standoff.world.carried import carried_pieces, carried_rows, carried_table
 from standoff.world.model import Model
-from standoff.world.moment import Moment
-from standoff.world.narrow_phase import Asked, Refused, ask
+from standoff.world.moment import FrameTime
+from standoff.world.narrow_phase import NarrowPhaseResult, RefusedFrame, ask
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses, refused_pose
-from standoff.world.state import NO_SOLIDS, KeptSolids, Tree, WorldCounts, WorldState
+from standoff.world.state import NO_SOLIDS, KeptSolids, PaddedTree, WorldCounts, WorldState
 
 Twists = tuple[Array, bool]
 
-NO_PAIRS = Table(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))
+NO_PAIRS = PairTable(np.empty((0, W.N_INTS), dtype=np.int64), np.empty((0, W.N_KNOWN)))
 
 
 def started_state(
@@ -35,7 +35,7 @@ def started_state(
 ) -> WorldState:
     """The state of a first frame."""
     before = empty_placed(len(world.search.pieces.owners)).placed
-    moment = Moment(0, 0.0, 0.0, *twists, False, world.minima, 1, progress)
+    moment = FrameTime(0, 0.0, 0.0, *twists, False, world.minima, 1, progress)
     return _sought(world, given, before, (NO_PAIRS, NO_SOLIDS), (), moment)
 
 
@@ -55,7 +55,7 @@ def carried_state(
     known = carried_table(world, before, numbers, keeps_rows)
     may_rest = not before.has_twist
     frame, minima = before.frame + 1, world.minima
-    moment = Moment(frame, before.time, dt, NO_TWISTS, False, may_rest, minima, 1, progress)
+    moment = FrameTime(frame, before.time, dt, NO_TWISTS, False, may_rest, minima, 1, progress)
     return _sought(world, given, placed, known, before.pages, moment)
 
 
@@ -63,9 +63,9 @@ def _sought(
     world: Model,
     given: GivenPoses,
     before: Array,
-    known: tuple[Table, KeptSolids],
+    known: tuple[PairTable, KeptSolids],
     pages: tuple[Array, ...],
-    moment: Moment,
+    moment: FrameTime,
 ) -> WorldState:
     """The state of a frame in which the pairs of all pieces are sought, and what is known of some
     is kept."""
@@ -78,10 +78,10 @@ def _sought(
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
-def no_tree(n: int) -> Tree:
+def no_tree(n: int) -> PaddedTree:
     """Before the first frame of n pieces: none is in a box."""
     none = np.zeros(1, dtype=np.int64)
-    return Tree(np.zeros((n, 6)), np.empty((2, 6)), none, none, 0, 0)
+    return PaddedTree(np.zeros((n, 6)), np.empty((2, 6)), none, none, 0, 0)
 
 
 def next_state(
@@ -93,23 +93,23 @@ def next_state(
     if may_rest and before.counts.uncertified == 0 and np.array_equal(before.poses, given.matrices):
         return _rested(before, dt)
     frame, given = _placed(world, given, before.tree, before.placed)
-    tree, table = before.tree, Table(before.ints, before.known)
+    tree, table = before.tree, PairTable(before.ints, before.known)
     left = int(frame.sought.sum())
     if left and not search.everything:
         tree = repadded(search, frame, tree, before.placed, left)
         table = table_of(search, frame, tree, table)
     else:
-        table = Table(table.ints.copy(), table.known.copy())
+        table = PairTable(table.ints.copy(), table.known.copy())
     time = before.time + dt
-    moment = Moment(before.frame + 1, time, dt, *twists, may_rest, world.minima, workers)
+    moment = FrameTime(before.frame + 1, time, dt, *twists, may_rest, world.minima, workers)
     kept = before.pages, before.solids
     asked = _asked(world, given, (frame, table), kept, moment)
     return _state(world, given, (frame, tree, table), asked, moment)
 
 
 def _placed(
-    world: Model, given: GivenPoses, tree: Tree, before: Array
-) -> tuple[Placed, GivenPoses]:
+    world: Model, given: GivenPoses, tree: PaddedTree, before: Array
+) -> tuple[PlacedPieces, GivenPoses]:
     """Where the pieces are; poses that are only rounded are repaired."""
     frame, bad, _, _ = place(world.search, given.matrices, tree, before)
     if bad >= 0:
@@ -123,10 +123,10 @@ def _placed(
 def _asked(
     world: Model,
     given: GivenPoses,
-    found: tuple[Placed, Table],
+    found: tuple[PlacedPieces, PairTable],
     kept: tuple[tuple[Array, ...], KeptSolids],
-    moment: Moment,
-) -> Asked:
+    moment: FrameTime,
+) -> NarrowPhaseResult:
     """`ask`, with the names of the bodies in an error."""
     pieces, (pages, before), solids = world.search.pieces, kept, None
     if world.solids.any:
@@ -135,7 +135,7 @@ def _asked(
         solids = SolidRows(world, given.matrices, *found, before, moment)
     try:
         return ask(world.laws, pieces, *found, pages, moment, solids)
-    except Refused as refused:
+    except RefusedFrame as refused:
         p, q, why = refused.args
         names = tuple(world.listed[pieces.owners[k]][0] for k in (p, q))
         raise StandoffError(
@@ -156,9 +156,9 @@ def _rested(before: WorldState, dt: float) -> WorldState:
 def _state(
     world: Model,
     given: GivenPoses,
-    found: tuple[Placed, Tree, Table],
-    asked: Asked,
-    moment: Moment,
+    found: tuple[PlacedPieces, PaddedTree, PairTable],
+    asked: NarrowPhaseResult,
+    moment: FrameTime,
 ) -> WorldState:
     frame, tree, (ints, known) = found
     fates = asked.fates

@@ -14,7 +14,7 @@ from standoff.tracking.inputs import matrix_and_mark
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import checked_law
 from standoff.typing import Array
-from standoff.world.pieces import Piece, PieceUnion, name_of
+from standoff.world.pieces import CompoundPiece, PieceUnion, name_of
 from standoff.world.poses import GivenPoses, mend_poses
 from standoff.world.shapes import Shape, as_shape
 
@@ -97,14 +97,14 @@ def checked_bodies(bodies: Any) -> dict[str, BodyLike]:
     return found
 
 
-def named_pieces(bodies: Mapping[str, BodyLike]) -> dict[str, Piece]:
+def named_pieces(bodies: Mapping[str, BodyLike]) -> dict[str, CompoundPiece]:
     """All pieces, by the names of bodies and pieces."""
-    found: dict[str, Piece] = {}
+    found: dict[str, CompoundPiece] = {}
     for name, body in bodies.items():
         if isinstance(body, PieceUnion):
             found |= {f"{name}.{part}": piece for part, piece in body.pieces.items()}
         else:
-            found[name] = Piece(body, Pose.identity())
+            found[name] = CompoundPiece(body, Pose.identity())
     return found
 
 

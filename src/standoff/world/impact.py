@@ -15,7 +15,7 @@ from standoff.checks.numbers import positive, whole_number
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.impact import Impact, time_of_impact
 from standoff.impact.answer import ImpactStatus
-from standoff.impact.moment import EPS, Box, Placed
+from standoff.impact.moment import EPS, BodyAtInstant, BodyBox
 from standoff.impact.search import checked_clearance, checked_times
 from standoff.impact.tolerances import POSE_ROUNDINGS, TIME_ROUNDINGS
 from standoff.motion.bounds import bounds_of, breaks_of, known
@@ -25,7 +25,7 @@ from standoff.motion.pose import Pose
 from standoff.motion.vectors import length
 from standoff.tracking.inputs import matrix_and_mark
 from standoff.typing import Array, Ints
-from standoff.world.broad_phase import Search, pairs_of_boxes
+from standoff.world.broad_phase import BroadPhase, pairs_of_boxes
 from standoff.world.model import Model
 from standoff.world.pieces import PieceUnion
 from standoff.world.poses import check_level, check_names
@@ -50,7 +50,7 @@ class Follower:
 
     def __init__(self, body: Any, path: Any, first: float, last: float) -> None:
         self.body, self.path = body, path
-        self._box, self._first = Box(body), first
+        self._box, self._first = BodyBox(body), first
         self.rests = not breaks_of(path, first, last)
         if self.rests:
             bound = bounds_of(path, first, last, self._box.middle)
@@ -79,7 +79,7 @@ class Follower:
         and no farther from the chord than its acceleration bends it.
         """
         own, span = self._box, last - first
-        ends = [Placed(own.middle, self.path, time) for time in (first, last)]
+        ends = [BodyAtInstant(own.middle, self.path, time) for time in (first, last)]
         bound = bounds_of(self.path, first, last, own.middle)
         a, b = ends[0].centre, ends[1].centre
         middle, way = 0.5 * (a + b), 0.5 * bound.speed * span
@@ -100,7 +100,7 @@ class Follower:
         """How far a box is above this half-space, at least (length); 0 of one that moves."""
         if not self.rests:
             return 0.0
-        at = Placed(self._box.middle, self.path, self._first)
+        at = BodyAtInstant(self._box.middle, self.path, self._first)
         normal = at.rotation @ self._box.normal
         middle, half = 0.5 * (box[3:] + box[:3]), 0.5 * (box[3:] - box[:3])
         reach = float(np.abs(normal) @ half) + self._box.radius
@@ -126,7 +126,7 @@ class Meeting(NamedTuple):
 
 
 def meetings(
-    search: Search, followers: Sequence[Follower], first: float, last: float, clearance: float
+    search: BroadPhase, followers: Sequence[Follower], first: float, last: float, clearance: float
 ) -> list[Meeting]:
     """The pairs of pieces that may come within the clearance, or within their margin where that is
     more (length), in the order of the times at which they may.
@@ -143,7 +143,7 @@ def meetings(
 
 
 def _near(
-    search: Search, followers: Sequence[Follower], times: Array, clearance: float
+    search: BroadPhase, followers: Sequence[Follower], times: Array, clearance: float
 ) -> list[Meeting]:
     boxes = np.stack([each.boxes(times) for each in followers], axis=1)
     reach = max(clearance, search.rules.greatest_margin)
@@ -156,13 +156,13 @@ def _near(
     return sorted(Meeting(time, *pair) for pair, time in found.items())
 
 
-def _required(search: Search, pairs: Ints, clearance: float) -> Array:
+def _required(search: BroadPhase, pairs: Ints, clearance: float) -> Array:
     """What each pair of pieces must keep (length)."""
     i, j = search.pieces.owners[pairs.T]
     return np.maximum(search.rules.margins_of(i * len(search.rules.kinds) + j), clearance)
 
 
-def _gaps(search: Search, followers: Sequence[Follower], boxes: Array, pairs: Ints) -> Array:
+def _gaps(search: BroadPhase, followers: Sequence[Follower], boxes: Array, pairs: Ints) -> Array:
     """The distances of boxes, and heights above half-spaces, rounded down (length)."""
     a, b = boxes[pairs[:, 0]], boxes[pairs[:, 1]]
     apart = np.maximum(0.0, np.maximum(b[:, :3] - a[:, 3:], a[:, :3] - b[:, 3:]))
@@ -281,7 +281,7 @@ def _named(what: str) -> Iterator[None]:
         raise type(error)(f"{what}: {error}", error.argument, error.value) from error
 
 
-class _Part(NamedTuple):
+class _MovingPiece(NamedTuple):
     """A piece of a body, and what follows its path."""
 
     name: str
@@ -289,18 +289,20 @@ class _Part(NamedTuple):
     follower: Follower
 
 
-def _parts(world: Model, name: str, path: Any, times: tuple[float, float]) -> list[_Part]:
+def _parts(world: Model, name: str, path: Any, times: tuple[float, float]) -> list[_MovingPiece]:
     body: Any = world.listed[world.names.bodies[name]][1]
     with _named(f"paths[{name!r}]"):
         if not isinstance(body, PieceUnion):
-            return [_Part(name, "", Follower(body, path, *times))]
+            return [_MovingPiece(name, "", Follower(body, path, *times))]
         return [
-            _Part(name, part, Follower(piece.body, Offset(path, piece.pose), *times))
+            _MovingPiece(name, part, Follower(piece.body, Offset(path, piece.pose), *times))
             for part, piece in body.pieces.items()
         ]
 
 
-def _searched(a: _Part, b: _Part, duration: float, options: Mapping[str, Any]) -> Impact:
+def _searched(
+    a: _MovingPiece, b: _MovingPiece, duration: float, options: Mapping[str, Any]
+) -> Impact:
     """The impact of two pieces."""
     first, second = a.follower, b.follower
     with _named(f"The pair {(a.name, b.name)}"):

@@ -15,10 +15,10 @@ from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.tracking.answers import proven
 from standoff.typing import Array, Ints
-from standoff.world.broad_phase import Placed, Table, empty_placed, place
+from standoff.world.broad_phase import PairTable, PlacedPieces, empty_placed, place
 from standoff.world.frame import no_tree
 from standoff.world.model import Model
-from standoff.world.moment import Moment
+from standoff.world.moment import FrameTime
 from standoff.world.narrow_phase import answered
 from standoff.world.packed import PackedLaws, PackedPieces
 from standoff.world.poses import NO_TWISTS, GivenPoses, mend_poses
@@ -107,9 +107,9 @@ def _convex_answers_at(
         return PieceAnswers(*np.zeros((3, 0)), *np.zeros((3, 0, 3)))
     laws, many = _repeated(world, len(placed))
     rows = np.concatenate(placed)
-    frame = Placed(rows, *np.zeros((2, len(rows)), dtype=np.int64))
+    frame = PlacedPieces(rows, *np.zeros((2, len(rows)), dtype=np.int64))
     table = _table(frames * n + pieces[0], frames * n + pieces[1])
-    moment = Moment(0, 0.0, 0.0, NO_TWISTS, False, False, -np.inf, workers)
+    moment = FrameTime(0, 0.0, 0.0, NO_TWISTS, False, False, -np.inf, workers)
     every, fates = np.arange(k), np.full(k, W.NEW)
     pages = answered(laws, many, frame, table, (), moment, every, fates)
     at = table.ints[:, W.I_ROW]
@@ -140,11 +140,11 @@ def _repeated(world: Model, frames: int) -> tuple[PackedLaws, PackedPieces]:
     return laws._replace(addresses=addresses, classes=classes), many
 
 
-def _table(a: Ints, b: Ints) -> Table:
+def _table(a: Ints, b: Ints) -> PairTable:
     """Pairs of which nothing is known yet."""
     ints = np.full((len(a), W.N_INTS), -1, dtype=np.int64)
     known = np.zeros((len(a), W.N_KNOWN))
     ints[:, W.I_KEY] = np.arange(len(a))
     ints[:, W.I_A], ints[:, W.I_B], ints[:, W.I_INSIDE] = a, b, 0
     known[:, W.C_BOUND], known[:, W.C_UPPER], known[:, W.C_HORIZON] = -np.inf, np.inf, np.inf
-    return Table(ints, known)
+    return PairTable(ints, known)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.typing import Array, Ints
-from standoff.world.broad_phase import Search
+from standoff.world.broad_phase import BroadPhase
 from standoff.world.packed import PackedLaws
 from standoff.world.pieces import PieceUnion
 from standoff.world.rules import Names
@@ -32,7 +32,7 @@ class Model(NamedTuple):
     planar : bool
     minima : float
         All minima below it are asked, length; -inf for the nearest alone.
-    search : Search
+    search : BroadPhase
     laws : PackedLaws
     solids : SolidPairs
     """
@@ -47,7 +47,7 @@ class Model(NamedTuple):
     poses_of_fixed: Array
     planar: bool
     minima: float
-    search: Search
+    search: BroadPhase
     laws: PackedLaws
     solids: SolidPairs
 

@@ -8,7 +8,7 @@ from standoff.progress import Progress
 from standoff.typing import Array
 
 
-class Moment(NamedTuple):
+class FrameTime(NamedTuple):
     """A frame's place in time, and what else its answers are made with.
 
     Attributes

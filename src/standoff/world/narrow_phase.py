@@ -12,8 +12,8 @@ from standoff.kernels.state import arrays as K
 from standoff.kernels.world import arrays as W
 from standoff.tracking.threads import in_parts
 from standoff.typing import Array, Ints
-from standoff.world.broad_phase import Placed, Table
-from standoff.world.moment import Moment
+from standoff.world.broad_phase import PairTable, PlacedPieces
+from standoff.world.moment import FrameTime
 from standoff.world.packed import PackedLaws, PackedPieces
 from standoff.world.state import IN_PAGE, NO_SOLIDS, PAGE, KeptSolids
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 NUMBER = np.dtype(np.float64).itemsize
 
 
-class Refused(Exception):
+class RefusedFrame(Exception):
     """A frame of two pieces, by their numbers, that the kernel has refused, and its reason."""
 
 
-class Asked(NamedTuple):
+class NarrowPhaseResult(NamedTuple):
     """What came of a frame.
 
     Attributes
@@ -47,12 +47,12 @@ class Asked(NamedTuple):
 def ask(
     laws: PackedLaws,
     pieces: PackedPieces,
-    frame: Placed,
-    table: Table,
+    frame: PlacedPieces,
+    table: PairTable,
     pages: tuple[Array, ...],
-    moment: Moment,
+    moment: FrameTime,
     solids: SolidRows | None = None,
-) -> Asked:
+) -> NarrowPhaseResult:
     """Bring a table of pairs, which is changed in place, up to a frame."""
     n = len(table.ints)
     fates = np.empty(n, dtype=np.int64)
@@ -80,16 +80,16 @@ def ask(
     kept = fates != W.FAR
     table.ints[kept, W.I_FRAME] = moment.frame
     table.known[kept, W.C_TIME] = moment.time
-    return Asked(fates, _without_unused(table.ints, pages), found)
+    return NarrowPhaseResult(fates, _without_unused(table.ints, pages), found)
 
 
 def answered(
     laws: PackedLaws,
     pieces: PackedPieces,
-    frame: Placed,
-    table: Table,
+    frame: PlacedPieces,
+    table: PairTable,
     pages: tuple[Array, ...],
-    moment: Moment,
+    moment: FrameTime,
     asking: Ints,
     fates: Ints,
 ) -> tuple[Array, ...]:
@@ -129,7 +129,7 @@ def answered(
     in_parts(some_of, len(asking), moment.workers)
     if done.any():
         k = int(np.flatnonzero(done)[0])
-        raise Refused(int(ints[k, W.I_A]), int(ints[k, W.I_B]), int(done[k]))
+        raise RefusedFrame(int(ints[k, W.I_A]), int(ints[k, W.I_B]), int(done[k]))
     table.ints[asking, W.I_ROW] = rows
     return pages
 

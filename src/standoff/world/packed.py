@@ -18,7 +18,7 @@ from standoff.tracking.laws import PaperLaw
 from standoff.tracking.reached import reach
 from standoff.tracking.specialised import kinds_of, main_kind
 from standoff.typing import Array, Ints
-from standoff.world.pieces import Piece, PieceUnion
+from standoff.world.pieces import CompoundPiece, PieceUnion
 from standoff.world.shapes import Shape, box_of, dimension_of_shape, is_bounded
 
 
@@ -42,14 +42,14 @@ class PackedPieces(NamedTuple):
     facts: Array
 
 
-def pieces_of(body: Shape | PieceUnion) -> tuple[Piece, ...]:
+def pieces_of(body: Shape | PieceUnion) -> tuple[CompoundPiece, ...]:
     """Those of a compound, or a body as the only one."""
     if isinstance(body, PieceUnion):
         return tuple(body.pieces.values())
-    return (Piece(body, Pose.identity()),)
+    return (CompoundPiece(body, Pose.identity()),)
 
 
-def packed_pieces(bodies: Sequence[Sequence[Piece]], planar: bool = False) -> PackedPieces:
+def packed_pieces(bodies: Sequence[Sequence[CompoundPiece]], planar: bool = False) -> PackedPieces:
     """Of the pieces of all bodies, of a planar world or of a spatial one."""
     counts = [len(pieces) for pieces in bodies]
     owners = np.repeat(np.arange(len(bodies)), counts)
@@ -118,7 +118,7 @@ UNREAD: tuple[list[int], int] = [0, 0, 0, 0], 0
 
 
 def packed_laws(
-    pieces: Sequence[Piece], law: Law, dt: float, tracked: Sequence[bool]
+    pieces: Sequence[CompoundPiece], law: Law, dt: float, tracked: Sequence[bool]
 ) -> PackedLaws:
     """Of all pieces, in their order; nothing of those that no frame reads, as none of their pairs
     is tracked."""

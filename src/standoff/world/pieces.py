@@ -18,7 +18,7 @@ from standoff.world.poses import check_level
 from standoff.world.shapes import Shape, as_shape, dimension_of_shape, is_flat
 
 
-class Piece(NamedTuple):
+class CompoundPiece(NamedTuple):
     """One piece of a compound, and where it is fixed.
 
     Attributes
@@ -33,7 +33,7 @@ class Piece(NamedTuple):
     pose: Pose
 
 
-PieceLike: TypeAlias = "Shape | Piece | tuple[Shape, PoseLike]"
+PieceLike: TypeAlias = "Shape | CompoundPiece | tuple[Shape, PoseLike]"
 """A body or a solid in its place, or with its pose in the compound's frame."""
 
 
@@ -62,7 +62,9 @@ class PieceUnion(KeepsReadOnly):
         planar = self.dimension == 2
         if planar:
             check_in_plane(found)
-        self.pieces = {name: Piece(x.body, _exact(x.pose, planar)) for name, x in found.items()}
+        self.pieces = {
+            name: CompoundPiece(x.body, _exact(x.pose, planar)) for name, x in found.items()
+        }
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -86,7 +88,7 @@ def name_of(name: Any) -> str:
     raise StandoffTypeError(f"The name {shown(name)} is not a string of one letter or more.")
 
 
-def _piece(name: str, given: Any) -> Piece:
+def _piece(name: str, given: Any) -> CompoundPiece:
     body, pose = given if isinstance(given, tuple) and len(given) == 2 else (given, None)
     shape = as_shape(body)
     if shape is None:
@@ -96,7 +98,7 @@ def _piece(name: str, given: Any) -> Piece:
             given,
         )
     try:
-        return Piece(shape, Pose.identity() if pose is None else Pose.of(pose))
+        return CompoundPiece(shape, Pose.identity() if pose is None else Pose.of(pose))
     except StandoffError as error:
         raise type(error)(f"The piece {name!r}: {error}", "pieces", given) from error
 
@@ -111,7 +113,7 @@ def _exact(pose: Pose, planar: bool) -> Pose:
     return Pose.from_checked(without_rounding(rotation), pose.translation, repaired=pose.repaired)
 
 
-def check_in_plane(pieces: Mapping[str, Piece]) -> None:
+def check_in_plane(pieces: Mapping[str, CompoundPiece]) -> None:
     """Refuse a piece that is fixed out of z = 0; its name is told.
 
     Raises StandoffError.

@@ -14,7 +14,7 @@ from standoff.checks.numbers import not_negative
 from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.typing import Array, Ints
-from standoff.world.pieces import Piece, name_of
+from standoff.world.pieces import CompoundPiece, name_of
 from standoff.world.shapes import is_bounded
 
 Pairs = Iterable[tuple[str, str]]
@@ -94,7 +94,7 @@ class Rules(NamedTuple):
         return float(self.margins_of(np.array([number]))[0])
 
 
-class Given(NamedTuple):
+class PairRules(NamedTuple):
     """What the user says of pairs; see `World`."""
 
     groups: Mapping[str, Sequence[str]]
@@ -163,7 +163,7 @@ class Names:
         return given[0], given[1]
 
 
-def packed_rules(names: Names, fixed: NDArray[np.bool_], given: Given) -> Rules:
+def packed_rules(names: Names, fixed: NDArray[np.bool_], given: PairRules) -> Rules:
     """The rules of a world's pairs; two fixed bodies are never a pair."""
     n = len(names.bodies)
     single: list[Ints] = []
@@ -290,7 +290,7 @@ def _margins(
 
 
 def check_half_spaces(
-    names: Sequence[str], pieces: Sequence[Sequence[Piece]], rules: Rules
+    names: Sequence[str], pieces: Sequence[Sequence[CompoundPiece]], rules: Rules
 ) -> None:
     """Refuse two half-spaces that would be a pair.
 

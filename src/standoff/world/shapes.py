@@ -12,7 +12,7 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.boundary import Boundary
 from standoff.kernels.body import layout as L
-from standoff.tracking.cold_query import Queried
+from standoff.tracking.cold_query import AnswersItself
 from standoff.typing import Array
 
 Shape: TypeAlias = Any
@@ -29,7 +29,7 @@ def as_shape(given: Any) -> Shape | None:
 
         return solid_of(given)
     # a compound can be asked too, but is made of pieces
-    return given if isinstance(given, Queried) and not hasattr(given, "pieces") else None
+    return given if isinstance(given, AnswersItself) and not hasattr(given, "pieces") else None
 
 
 def is_solid(shape: Shape) -> bool:

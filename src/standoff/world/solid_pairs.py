@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from standoff.errors import StandoffError
-from standoff.world.pieces import Piece, PieceUnion
+from standoff.world.pieces import CompoundPiece, PieceUnion
 from standoff.world.rules import Rules
 from standoff.world.shapes import Shape, dimension_of_shape, is_solid
 
@@ -39,7 +39,7 @@ class SolidPairs(NamedTuple):
 
 
 def solid_pairs(
-    names: Sequence[str], pieces: Sequence[Sequence[Piece]], rules: Rules
+    names: Sequence[str], pieces: Sequence[Sequence[CompoundPiece]], rules: Rules
 ) -> SolidPairs:
     """Of all bodies, with what is asked of them made and checked.
 

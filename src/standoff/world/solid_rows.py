@@ -24,15 +24,15 @@ from standoff.solids.of_pieces import OfPieces, answer_of_pieces
 from standoff.solids.query import distance
 from standoff.solids.spatial.half_space import size_together
 from standoff.solids.spatial.tolerances import PROOF_TOLERANCE
-from standoff.solids.tracked.front import Front, moved_by
+from standoff.solids.tracked.front import KeptFront, moved_by
 from standoff.solids.tracked.state import SolidState
 from standoff.solids.tracked.tracker import SolidTracker, is_tracked
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 from standoff.typing import Array, Ints
-from standoff.world.broad_phase import Placed, Table
+from standoff.world.broad_phase import PairTable, PlacedPieces
 from standoff.world.model import Model
-from standoff.world.moment import Moment
+from standoff.world.moment import FrameTime
 from standoff.world.pair_answer import gradient_of_bodies
 from standoff.world.pieces import PieceUnion
 from standoff.world.placed_solids import PlacedSolid, placed_solid
@@ -53,10 +53,10 @@ class SolidRows:
         self,
         world: Model,
         poses: Array,
-        frame: Placed,
-        table: Table,
+        frame: PlacedPieces,
+        table: PairTable,
         before: KeptSolids,
-        moment: Moment,
+        moment: FrameTime,
     ) -> None:
         self.world, self.poses, self.frame, self.table = world, poses, frame, table
         self.before, self.moment = before, moment
@@ -64,7 +64,7 @@ class SolidRows:
         has = world.solids.bodies
         self.rows = has[self._owners[ints[:, W.I_A]]] | has[self._owners[ints[:, W.I_B]]]
         self._found: dict[int, SolidProximity] = {}
-        self._fronts: dict[int, Front] = {}
+        self._fronts: dict[int, KeptFront] = {}
         self._asked: set[int] = set()
         self._cold: dict[tuple[int, int, float | None], list[tuple[Array, SolidProximity]]] = {}
 

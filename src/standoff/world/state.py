@@ -15,7 +15,7 @@ from standoff.read_only import KeepsReadOnly
 
 if TYPE_CHECKING:
     from standoff.solids.answer import SolidProximity
-from standoff.solids.tracked.front import Front
+from standoff.solids.tracked.front import KeptFront
 from standoff.typing import Array, Ints
 
 PAGE = 32
@@ -23,7 +23,7 @@ PAGE = 32
 IN_PAGE = (1 << PAGE) - 1
 
 
-class Tree(NamedTuple):
+class PaddedTree(NamedTuple):
     """Padded boxes of the pieces, and the tree over them (``kernels.world.tree``)."""
 
     boxes: Array
@@ -85,7 +85,7 @@ class KeptSolids(NamedTuple):
 
     pieces: Mapping[int, SolidProximity]
     bodies: Mapping[int, SolidProximity]
-    fronts: Mapping[int, Front]
+    fronts: Mapping[int, KeptFront]
 
 
 NO_SOLIDS = KeptSolids({}, {}, {})
@@ -140,7 +140,7 @@ class WorldState(KeepsReadOnly):
     has_twist: bool
     poses: Array
     placed: Array
-    tree: Tree
+    tree: PaddedTree
     ints: Ints
     known: Array
     near: Ints

@@ -23,7 +23,7 @@ from standoff.tracking.laws import DEFAULT_LAW
 from standoff.typing import Array
 from standoff.wording import counted
 from standoff.world.answer import WorldAnswer
-from standoff.world.broad_phase import Search
+from standoff.world.broad_phase import BroadPhase
 from standoff.world.carried import carried_poses, changed_arguments
 from standoff.world.frame import carried_state, next_state, started_state
 from standoff.world.given import (
@@ -47,7 +47,7 @@ from standoff.world.poses import (
     read_poses_of,
     read_twists_of,
 )
-from standoff.world.rules import Given, Names, check_half_spaces, packed_rules
+from standoff.world.rules import Names, PairRules, check_half_spaces, packed_rules
 from standoff.world.solid_pairs import solid_pairs
 from standoff.world.state import WorldState, check_key
 
@@ -125,7 +125,7 @@ class World(KeepsReadOnly):
         self.dt, self.law = positive(dt, "dt"), law_of_pairs(law)
         self._resolved = self.law.resolved(self.dt)
         self._fixed = mapping_of(fixed, "fixed", "poses")
-        self._given = Given(
+        self._given = PairRules(
             mapping_of(groups, "groups", "lists of names"),
             pairs_of(ignore, "ignore"),
             None if only is None else pairs_of(only, "only"),
@@ -151,7 +151,7 @@ class World(KeepsReadOnly):
         # addresses are those of this process
         return _restored, (self._arguments(self._given), self.model.key)
 
-    def _arguments(self, given: Given) -> dict[str, Any]:
+    def _arguments(self, given: PairRules) -> dict[str, Any]:
         """What this world was made of, with other rules of pairs."""
         least = None if self.minima == -math.inf else self.minima
         found = {**given._asdict(), "fixed": self._fixed, "within": self.within, "minima": least}
@@ -408,7 +408,7 @@ def _restored(given: Mapping[str, Any], key: str) -> World:
 
 def made_model(
     bodies: Mapping[str, BodyLike],
-    given: Given,
+    given: PairRules,
     at_rest: Mapping[str, PoseLike],
     within: float,
     minima: float,
@@ -444,7 +444,7 @@ def made_model(
         poses_of_fixed=poses,
         planar=planar,
         minima=minima,
-        search=Search(packed_pieces(pieces, planar), rules, within, reach),
+        search=BroadPhase(packed_pieces(pieces, planar), rules, within, reach),
         laws=packed_laws([piece for each in pieces for piece in each], law, dt, tracked),
         solids=solids,
     )

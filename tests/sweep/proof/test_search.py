@@ -10,7 +10,7 @@ import pytest
 from standoff.sweep.job import Job
 from standoff.sweep.parameters import Parameter
 from standoff.sweep.proof import search as searches
-from standoff.sweep.proof.box import Looked, ParameterBox
+from standoff.sweep.proof.box import CellFindings, ParameterBox
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.pair_box import PairBox
 from standoff.sweep.proof.proof import Proof
@@ -140,11 +140,11 @@ class HalfEasy(ParameterBox):
     def moves(self, cells: Cells) -> tuple[np.ndarray, np.ndarray]:
         return cells.halves[:, 0], cells.halves
 
-    def look(self, cells: Cells) -> Looked:
+    def look(self, cells: Cells) -> CellFindings:
         n = len(cells.place)
         easy = (cells.middles[:, 0] < 0.5) & (cells.levels >= 8)
         kind, zero = np.where(easy, int(Kind.PROVEN), -1), np.zeros(n)
-        return Looked(kind, zero.astype(int), zero, zero, n, 0, cells.known)
+        return CellFindings(kind, zero.astype(int), zero, zero, n, 0, cells.known)
 
 
 def test_what_a_group_does_not_use_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import standoff as so
 from standoff.errors import StandoffError
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.scene.shapes import read_body
 from standoff.sweep.job import Job
 from standoff.sweep.proof.cells import Cells
@@ -121,7 +121,7 @@ def distance_at(job: Job, case: Case, row: np.ndarray) -> so.Proximity:
             given = tables[p.moves].get(key, 0.0)
             value = [*given[: int(entry) - 1], x, *given[int(entry) :]] if entry else x
             tables[p.moves][key] = value
-    bodies = [read_body(Table(tables[name])) for name in ("tool", "ball")]
+    bodies = [read_body(SceneTable(tables[name])) for name in ("tool", "ball")]
     return so.distance(*bodies, *(pose[0] for pose in job.poses(row[None])))
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from standoff.bodies.drawing.body_view import Space, across, direction_to_viewer, frame
-from standoff.bodies.drawing.solids import Look, Solid, draw_solid
+from standoff.bodies.drawing.solids import Look, PictureSurface, draw_solid
 from standoff.bodies.features import Feature
 from standoff.bodies.plain_data import without_roundoff
 from standoff.errors import of_extra
@@ -52,7 +52,7 @@ THROUGH = 0.55
 """Opacity of bodies that overlap."""
 
 
-class Shown(NamedTuple):
+class DrawnAnswer(NamedTuple):
     """An answer to be drawn: flat poses (12,), world vectors (3,), signed distance."""
 
     poses: tuple[Array, Array]
@@ -95,7 +95,7 @@ def angles_of(towards: Array) -> tuple[float, float]:
     return float(elevation), float(np.degrees(np.arctan2(towards[1], towards[0])))
 
 
-def cloud_of(solids: tuple[Solid, Solid], shown: Shown) -> Array:
+def cloud_of(solids: tuple[PictureSurface, PictureSurface], shown: DrawnAnswer) -> Array:
     """World points of both bodies, (n, 3); beside a half-space, of the other and both witnesses."""
     placed = [
         solid.points @ pose[:9].reshape(3, 3).T + pose[9:]
@@ -117,8 +117,8 @@ def seen_from(cloud: Array, towards: Array) -> Array:
 
 def draw_pair(
     axes: Space,
-    solids: tuple[Solid, Solid],
-    shown: Shown,
+    solids: tuple[PictureSurface, PictureSurface],
+    shown: DrawnAnswer,
     view: tuple[float, float],
     cloud: Array,
     unit: str,
@@ -141,7 +141,7 @@ def draw_pair(
     frame(axes, seen_from(cloud, towards), 0.0, towards, unit)
 
 
-def _draw_witnesses(axes: Space, shown: Shown, *, hidden: bool) -> None:
+def _draw_witnesses(axes: Space, shown: DrawnAnswer, *, hidden: bool) -> None:
     """Draw the witness line on top; the part that the body in front hides is dashed."""
     ends = np.array(shown.points).T
     look = {"color": WITNESS_COLOUR, "marker": "o", "markersize": 4.5}
@@ -154,7 +154,11 @@ def _draw_witnesses(axes: Space, shown: Shown, *, hidden: bool) -> None:
 
 
 def _draw_planar(
-    axes: Axes, solids: tuple[Solid, Solid], shown: Shown, cloud: Array, unit: str
+    axes: Axes,
+    solids: tuple[PictureSurface, PictureSurface],
+    shown: DrawnAnswer,
+    cloud: Array,
+    unit: str,
 ) -> None:
     for k, (solid, pose) in enumerate(zip(solids, shown.poses, strict=True)):
         rotation, shift = pose[:9].reshape(3, 3), pose[9:]
@@ -178,7 +182,9 @@ def _draw_planar(
     axes.grid(alpha=0.3)
 
 
-def legend_of(solids: tuple[Solid, Solid], shown: Shown, unit: str) -> list[Artist]:
+def legend_of(
+    solids: tuple[PictureSurface, PictureSurface], shown: DrawnAnswer, unit: str
+) -> list[Artist]:
     """Entries that name the bodies, their active features, and the distance."""
     handles: list[Artist] = []
     for k, solid in enumerate(solids):
@@ -196,7 +202,10 @@ def legend_of(solids: tuple[Solid, Solid], shown: Shown, unit: str) -> list[Arti
 
 
 def pair_figure(
-    solids: tuple[Solid, Solid], shown: Shown, view: tuple[float, float] | None, unit: str
+    solids: tuple[PictureSurface, PictureSurface],
+    shown: DrawnAnswer,
+    view: tuple[float, float] | None,
+    unit: str,
 ) -> Figure:
     """Return the picture of two bodies and an answer."""
     figure = new_figure()
@@ -207,7 +216,9 @@ def pair_figure(
     return figure
 
 
-def _usual_view(solids: tuple[Solid, Solid], shown: Shown) -> tuple[float, float]:
+def _usual_view(
+    solids: tuple[PictureSurface, PictureSurface], shown: DrawnAnswer
+) -> tuple[float, float]:
     """Across the normal; of a half-space somewhat from above its plane, which is else a line."""
     view = view_across(shown.normal)
     towards = direction_to_viewer(view)
@@ -217,7 +228,9 @@ def _usual_view(solids: tuple[Solid, Solid], shown: Shown) -> tuple[float, float
     return angles_of(towards)
 
 
-def add_legend(figure: Figure, solids: tuple[Solid, Solid], shown: Shown, unit: str) -> None:
+def add_legend(
+    figure: Figure, solids: tuple[PictureSurface, PictureSurface], shown: DrawnAnswer, unit: str
+) -> None:
     figure.legend(
         handles=legend_of(solids, shown, unit),
         loc="lower center",

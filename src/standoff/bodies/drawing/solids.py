@@ -32,7 +32,7 @@ NO_FACE = -1
 
 
 @dataclass(frozen=True)
-class Solid:
+class PictureSurface:
     """A body's surface for pictures, in its own frame.
 
     Attributes
@@ -64,7 +64,7 @@ class Look(NamedTuple):
     opacity: float
 
 
-def solid_of(body: Body) -> Solid:
+def solid_of(body: Body) -> PictureSurface:
     """Return a body's surface: its faces, or the envelope of the ball swept over its core."""
     meshes, lines = face_meshes(body, fine=True), edge_lines(body)
     cloud = [body.vertex_points, *(line.points for line in lines), *(m.points for m in meshes)]
@@ -74,9 +74,9 @@ def solid_of(body: Body) -> Solid:
         none = np.zeros((0, 3))
         empty = np.zeros((0, 3), dtype=np.int64)
         # the outline of a planar body, or a core that is a point or a segment
-        return Solid(body, np.concatenate([none, *cloud]), none, empty, empty[:, 0], lines)
+        return PictureSurface(body, np.concatenate([none, *cloud]), none, empty, empty[:, 0], lines)
     first = np.cumsum([0, *(len(mesh.points) for mesh in meshes[:-1])])
-    return Solid(
+    return PictureSurface(
         body,
         np.concatenate([mesh.points for mesh in meshes]),
         np.concatenate([mesh.normals for mesh in meshes]),
@@ -86,7 +86,7 @@ def solid_of(body: Body) -> Solid:
     )
 
 
-def _swept(body: Body, cloud: Array) -> Solid:
+def _swept(body: Body, cloud: Array) -> PictureSurface:
     """The farthest point of the swept body in each of many directions, and their hull."""
     k = np.arange(DIRECTIONS) + 0.5
     height, turn = 1.0 - 2.0 * k / DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
@@ -95,18 +95,23 @@ def _swept(body: Body, cloud: Array) -> Solid:
     points = cloud[(normals @ cloud.T).argmax(axis=1)] + body.radius * normals
     # QJ: many of them lie in the planes of flat faces.
     triangles = scipy.spatial.ConvexHull(points, qhull_options="QJ").simplices.astype(np.int64)
-    return Solid(body, points, normals, triangles, np.full(len(triangles), NO_FACE), [])
+    return PictureSurface(body, points, normals, triangles, np.full(len(triangles), NO_FACE), [])
 
 
 def draw_solid(
-    axes: Space, solid: Solid, pose: Array, towards: Array, look: Look, active: Feature | None
+    axes: Space,
+    solid: PictureSurface,
+    pose: Array,
+    towards: Array,
+    look: Look,
+    active: Feature | None,
 ) -> None:
     """Draw what a viewer sees of a solid.
 
     Parameters
     ----------
     axes : Axes3D
-    solid : Solid
+    solid : PictureSurface
     pose : (12,) array
         World pose of its body: R row-major, p.
     towards : (3,) array
@@ -137,7 +142,7 @@ def draw_solid(
 
 def _draw_skin(
     axes: Space,
-    solid: Solid,
+    solid: PictureSurface,
     pose: tuple[Array, Array],
     towards: Array,
     look: Look,

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from standoff.bodies.assembly import roundoff_note
 from standoff.bodies.convexity import Convexity
-from standoff.bodies.finishing import Packed, slack_of
+from standoff.bodies.finishing import PackedBoundary, slack_of
 from standoff.bodies.hulls.fewer_points import fewer_points
 from standoff.bodies.hulls.heights import highest
 from standoff.bodies.hulls.joints import (
-    Cones,
+    VertexCones,
     WideCorners,
     edge_turns,
     vertex_cones,
@@ -27,7 +27,14 @@ from standoff.bodies.hulls.outlines import Outlines, outlines
 from standoff.bodies.hulls.polyhedron import Polyhedron, polyhedron
 from standoff.bodies.hulls.qhull import hull_triangles
 from standoff.bodies.made_parts import MadeParts
-from standoff.bodies.packing import Assembled, Counts, Sample, Writer, put_header, put_samples
+from standoff.bodies.packing import (
+    ArrayWriter,
+    Assembled,
+    PartCounts,
+    Sample,
+    put_header,
+    put_samples,
+)
 from standoff.bodies.report import BodyReport, DihedralAngle, PatchCheck
 from standoff.bodies.sampling import (
     EDGE_BUDGET,
@@ -62,7 +69,7 @@ LEAST_FACES = 4
 
 def hull(
     points: Array, radius: float, tolerance: float | None = None, word: str = "vertices"
-) -> Packed:
+) -> PackedBoundary:
     """The hull of points, (n, 3), swept by a ball.
 
     Raises BodyError: the points span no volume, are too thin for their extent, or extend over too
@@ -105,7 +112,7 @@ def solid_body(
     tolerance: float | None = None,
     above: float = 0.0,
     solid: Polyhedron | None = None,
-) -> Packed:
+) -> PackedBoundary:
     """The polyhedron with given outlines, whose corners are among the points, (n, 3).
 
     Raises BodyError: a face whose corners are not in its plane, or a point above one.
@@ -151,7 +158,7 @@ def solid_body(
         slack=slack,
         coordinate_roundoff=roundoff,
     )
-    return Packed(parts, ints, reals, report)
+    return PackedBoundary(parts, ints, reals, report)
 
 
 def _facts(solid: Polyhedron, turns: Array, smooth: NDArray[np.bool_]) -> dict[str, Any]:
@@ -171,7 +178,9 @@ def _facts(solid: Polyhedron, turns: Array, smooth: NDArray[np.bool_]) -> dict[s
     }
 
 
-def image_of(solid: Polyhedron, linear: Array, shift: Array, radius: float, above: float) -> Packed:
+def image_of(
+    solid: Polyhedron, linear: Array, shift: Array, radius: float, above: float
+) -> PackedBoundary:
     """The image of a polyhedron under an affine map, x -> linear x + shift, swept by a ball.
 
     Its parts have the parameters of the given one's, but for a mirror's.
@@ -263,7 +272,7 @@ def middle_of(points: Array) -> Array:
     return np.asarray(0.5 * (points.min(axis=0) + points.max(axis=0)))
 
 
-def recentred(packed: Packed, given: Array, middle: Array) -> Packed:
+def recentred(packed: PackedBoundary, given: Array, middle: Array) -> PackedBoundary:
     """A hull that was taken about a middle, with a note of it."""
     if not middle.any():
         return packed
@@ -403,7 +412,7 @@ SECTOR_REALS = 5
 
 def pack_polyhedron(
     solid: Polyhedron,
-    joints: tuple[Bools, Cones, WideCorners],
+    joints: tuple[Bools, VertexCones, WideCorners],
     pcurves: Array,
     box: tuple[Array, Array],
     inner: Array,
@@ -417,9 +426,9 @@ def pack_polyhedron(
     of parameters on the faces; the others as for ``packing.pack``.
     """
     smooth, cones, wide = joints
-    w = Writer()
+    w = ArrayWriter()
     faces, edges, vertices = solid.n_faces, len(solid.ends), len(solid.vertices)
-    put_header(w, Counts(3, faces, edges, vertices, faces, len(samples)), box, radius, slack)
+    put_header(w, PartCounts(3, faces, edges, vertices, faces, len(samples)), box, radius, slack)
     _put_faces(w, solid, pcurves, inner)
     _put_edges(w, solid, smooth)
     _put_vertices(w, solid, cones, wide)
@@ -427,7 +436,7 @@ def pack_polyhedron(
     return w.arrays()
 
 
-def _put_faces(w: Writer, solid: Polyhedron, pcurves: Array, inner: Array) -> None:
+def _put_faces(w: ArrayWriter, solid: Polyhedron, pcurves: Array, inner: Array) -> None:
     faces, corners = solid.n_faces, len(solid.corners)
     number, places = np.arange(faces), np.arange(corners)
     charts = len(w.reals) + L.SURFACE_DATA * number + COEDGE_REALS * solid.starts[:-1]
@@ -454,7 +463,7 @@ def _put_faces(w: Writer, solid: Polyhedron, pcurves: Array, inner: Array) -> No
     w.table(L.COEDGES, np.column_stack([solid.edges, line, coedges, solid.senses, solid.owners]))
 
 
-def _put_edges(w: Writer, solid: Polyhedron, smooth: Bools) -> None:
+def _put_edges(w: ArrayWriter, solid: Polyhedron, smooth: Bools) -> None:
     first, last = (solid.vertices[solid.ends[:, k]] for k in range(2))
     n = len(first)
     block = np.zeros((n, LINE_REALS))
@@ -467,7 +476,7 @@ def _put_edges(w: Writer, solid: Polyhedron, smooth: Bools) -> None:
     w.table(L.EDGES, np.column_stack([kind, offsets, flags, solid.ends, solid.sides]))
 
 
-def _put_vertices(w: Writer, solid: Polyhedron, cones: Cones, wide: WideCorners) -> None:
+def _put_vertices(w: ArrayWriter, solid: Polyhedron, cones: VertexCones, wide: WideCorners) -> None:
     n = len(solid.vertices)
     fans = np.bincount(solid.ends.ravel(), minlength=n)
     sectors = np.bincount(wide.vertices, minlength=n)

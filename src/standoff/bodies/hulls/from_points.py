@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from standoff.bodies.assembly import assemble
-from standoff.bodies.finishing import Packed, finish
+from standoff.bodies.finishing import PackedBoundary, finish
 from standoff.bodies.hulls.build import hull
 from standoff.bodies.hulls.qhull import unit_of
 from standoff.bodies.tolerances import NARROWEST
@@ -21,7 +21,7 @@ from standoff.geometry.curves import Line
 from standoff.typing import Array
 
 
-def hull_of(points: Any, tolerance: float | None, rounding: float) -> tuple[float, Packed]:
+def hull_of(points: Any, tolerance: float | None, rounding: float) -> tuple[float, PackedBoundary]:
     """(radius, packed hull) of ``Body.from_points``."""
     shape = shape_of(points)
     planar = shape is not None and len(shape) == 2 and shape[1] == 2
@@ -33,7 +33,7 @@ def hull_of(points: Any, tolerance: float | None, rounding: float) -> tuple[floa
     return radius, hull(given, radius, tolerance, "points")
 
 
-def _planar(points: Array, radius: float, tolerance: float | None) -> Packed:
+def _planar(points: Array, radius: float, tolerance: float | None) -> PackedBoundary:
     """The loop of lines round points of a plane, (n, 2)."""
     unit = unit_of(points, "points")
     try:

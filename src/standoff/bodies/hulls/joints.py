@@ -14,7 +14,7 @@ from standoff.typing import Array, Ints
 AXIS_STEPS = 32
 
 
-class Cones(NamedTuple):
+class VertexCones(NamedTuple):
     """Normals of the faces around vertices.
 
     Attributes
@@ -54,7 +54,7 @@ def edge_turns(solid: Polyhedron) -> Array:
     return np.asarray(np.arctan2(across, np.einsum("ij,ij->i", one, other)))
 
 
-def vertex_cones(solid: Polyhedron) -> Cones:
+def vertex_cones(solid: Polyhedron) -> VertexCones:
     """The faces around every vertex; the certificate pairs neighbours.
 
     Three or fewer are neighbours in any order, and keep that of their numbers.
@@ -71,7 +71,7 @@ def vertex_cones(solid: Polyhedron) -> Cones:
     y = np.cross(axes, x)
     angle = np.arctan2(np.einsum("ij,ij->i", normals, y[at]), np.einsum("ij,ij->i", normals, x[at]))
     angle[counts[at] < 4] = 0.0
-    return Cones(counts, faces[np.lexsort((angle, at))])
+    return VertexCones(counts, faces[np.lexsort((angle, at))])
 
 
 def wide_corners(solid: Polyhedron, pcurves: Array) -> WideCorners:
@@ -99,7 +99,7 @@ def wide_corners(solid: Polyhedron, pcurves: Array) -> WideCorners:
     )
 
 
-def widening(solid: Polyhedron, turns: Array, cones: Cones) -> float:
+def widening(solid: Polyhedron, turns: Array, cones: VertexCones) -> float:
     """1/h, h the least cosine between normals that meet and the axis of their cone, as
     ``convexity.widening`` has it; inf where a cone is too wide."""
     normals = solid.normals[cones.faces]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.bodies.finishing import Packed
+from standoff.bodies.finishing import PackedBoundary
 from standoff.bodies.hulls.build import hull
 from standoff.bodies.hulls.qhull import hull_triangles
 from standoff.bodies.meshes.columns import measured
@@ -21,7 +21,7 @@ WORD = "vertices of the mesh"
 
 def mesh_body(
     mesh: Any, as_hull: bool, tolerance: float | None, rounding: float
-) -> tuple[float, Packed]:
+) -> tuple[float, PackedBoundary]:
     """(radius, packed hull) of ``Body.from_mesh``."""
     radius = magnitude_or_zero(rounding, "rounding")
     tolerance = None if tolerance is None else magnitude(tolerance, "tolerance")

@@ -19,7 +19,7 @@ from standoff.bodies.moments.flux import (
     TENSOR,
     VECTOR_AREA,
     VOLUME,
-    Frame,
+    IntegralFrame,
 )
 from standoff.bodies.moments.skin import skin_cells
 from standoff.bodies.topology import Edge, Face
@@ -115,13 +115,13 @@ def _symmetric(six: Array) -> Array:
     return np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
 
 
-def _frame(body: Boundary) -> Frame:
+def _frame(body: Boundary) -> IntegralFrame:
     """Centred at a point inside, with the reach of the body."""
     centre = _amid(body.vertex_points, body.edge_parts, body.face_parts)
     box = body.reals[L.BOX_CENTRE : L.BOX_CENTRE + 3]
     half = body.reals[L.BOX_HALF : L.BOX_HALF + 3]
     reach = float(np.linalg.norm(np.abs(centre - box) + half)) + body.radius
-    return Frame(centre, reach, body.radius)
+    return IntegralFrame(centre, reach, body.radius)
 
 
 def _amid(vertices: Array, edges: Sequence[Edge], faces: Sequence[Face]) -> Array:
@@ -151,7 +151,7 @@ def _amid_face(face: Face, edges: Sequence[Edge]) -> Array:
     return surface.jet(float(u), float(v))[0][None]
 
 
-def _displaced(body: Boundary, frame: Frame, area: float) -> float:
+def _displaced(body: Boundary, frame: IntegralFrame, area: float) -> float:
     """A bound on the moments of a layer as thick as the error of boundary points, and of the gaps
     along edges, in the frame's unit.
 

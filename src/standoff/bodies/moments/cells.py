@@ -40,7 +40,7 @@ grids."""
 
 
 @dataclass(frozen=True)
-class Cell:
+class MomentCell:
     """A rectangle of parameters with its rule.
 
     Attributes
@@ -135,7 +135,7 @@ def _weights(angles: Array) -> Array:
     return np.asarray(2.0 * np.sin(angles) * series / (len(angles) + 1))
 
 
-def evaluated(cells: Sequence[Cell]) -> Sums:
+def evaluated(cells: Sequence[MomentCell]) -> Sums:
     """Integrals of cells by their rules, and their estimated errors along each parameter."""
     alike: dict[tuple[Integrand, tuple[int, int]], list[int]] = {}
     for k, cell in enumerate(cells):
@@ -154,7 +154,7 @@ def _joined(parts: Sequence[Sums]) -> Sums:
     return Sums(*map(np.concatenate, zip(*parts, strict=True)))
 
 
-def _together(cells: Sequence[Cell]) -> Sums:
+def _together(cells: Sequence[MomentCell]) -> Sums:
     """The same for cells with the same function and levels."""
     low, high = (np.array([getattr(cell, end) for cell in cells]) for end in ("low", "high"))
     spans = high - low
@@ -183,13 +183,13 @@ def _remainders(sums: Array) -> Array:
 
 
 def integrate(
-    cells: list[Cell], scale: Callable[[Array], Array], tolerance: float, most: int
+    cells: list[MomentCell], scale: Callable[[Array], Array], tolerance: float, most: int
 ) -> Total:
     """Refine cells until the sum of their error estimates is within a tolerance.
 
     Parameters
     ----------
-    cells : list of Cell
+    cells : list of MomentCell
     scale : callable
         From the integrals (columns,) the scales of their errors; inf for columns that need not be
         accurate.
@@ -223,7 +223,7 @@ def integrate(
     )
 
 
-def _owned(cells: Sequence[Cell], sums: Sums) -> dict[int, tuple[Array, Array]]:
+def _owned(cells: Sequence[MomentCell], sums: Sums) -> dict[int, tuple[Array, Array]]:
     owners, numbers = np.unique([cell.owner for cell in cells], return_inverse=True)
     found = np.zeros((2, len(owners), sums.values.shape[1]))
     for k, rows in enumerate((sums.values, sums.remainder)):
@@ -231,7 +231,7 @@ def _owned(cells: Sequence[Cell], sums: Sums) -> dict[int, tuple[Array, Array]]:
     return {owner: (found[0, i], found[1, i]) for i, owner in enumerate(owners.tolist())}
 
 
-def _excesses(cells: Sequence[Cell], sums: Sums, unit: Array) -> Array:
+def _excesses(cells: Sequence[MomentCell], sums: Sums, unit: Array) -> Array:
     """Of each cell the greatest relative error; 0 if it is roundoff or the cell cannot be
     halved."""
     low, high = (np.array([getattr(cell, end) for cell in cells]) for end in ("low", "high"))
@@ -240,7 +240,7 @@ def _excesses(cells: Sequence[Cell], sums: Sums, unit: Array) -> Array:
     return np.where((high - low).min(axis=1) < NARROWEST_CELL, 0.0, errors)
 
 
-def _refined(cell: Cell, *needs: float) -> list[Cell]:
+def _refined(cell: MomentCell, *needs: float) -> list[MomentCell]:
     """More nodes along the parameter that needs them; after the last rule, two halves."""
     # both, if neither is much better than the other
     axes = [k for k in (0, 1) if needs[k] >= 0.1 * max(needs)]

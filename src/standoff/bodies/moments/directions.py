@@ -14,8 +14,8 @@ from itertools import product
 
 import numpy as np
 
-from standoff.bodies.moments.cells import Cell, Integrand
-from standoff.bodies.moments.flux import Frame, flux, offset_areas
+from standoff.bodies.moments.cells import Integrand, MomentCell
+from standoff.bodies.moments.flux import IntegralFrame, flux, offset_areas
 from standoff.geometry.curves import Curve
 from standoff.geometry.quadrics import sphere_atlas
 from standoff.geometry.surfaces import Surface
@@ -34,7 +34,7 @@ EVENLY_AROUND = _EVENLY_AROUND / np.linalg.norm(_EVENLY_AROUND, axis=1)[:, None]
 
 
 @dataclass(frozen=True, eq=False)
-class Arc:
+class BoundaryArc:
     """A piece of a boundary, parameter from first to last; sign -1 if the part is on its right,
     seen from outside the sphere."""
 
@@ -44,11 +44,12 @@ class Arc:
     sign: int
 
 
-def sphere_cells(values: OverSphere) -> list[Cell]:
+def sphere_cells(values: OverSphere) -> list[MomentCell]:
     """The whole sphere: six gnomonic squares, by angles from their middles."""
     quarter = 0.25 * np.pi
     return [
-        Cell(_square(chart, values), (-quarter, -quarter), (quarter, quarter)) for chart in _CHARTS
+        MomentCell(_square(chart, values), (-quarter, -quarter), (quarter, quarter))
+        for chart in _CHARTS
     ]
 
 
@@ -65,12 +66,14 @@ def _square(chart: Surface, values: OverSphere) -> Integrand:
     return integrand
 
 
-def part_cells(arcs: Sequence[Arc], start: Array, values: OverSphere) -> list[Cell]:
+def part_cells(arcs: Sequence[BoundaryArc], start: Array, values: OverSphere) -> list[MomentCell]:
     """The part inside arcs; minus the whole sphere if it contains the point opposite the start."""
-    return [Cell(_sector(arc, start, values), (arc.first, 0.0), (arc.last, 1.0)) for arc in arcs]
+    return [
+        MomentCell(_sector(arc, start, values), (arc.first, 0.0), (arc.last, 1.0)) for arc in arcs
+    ]
 
 
-def _sector(arc: Arc, start: Array, values: OverSphere) -> Integrand:
+def _sector(arc: BoundaryArc, start: Array, values: OverSphere) -> Integrand:
     """Over a signed triangle between the start and an arc, parametrised along and towards it."""
 
     def integrand(_: Sequence[None], t: Array, s: Array) -> Array:
@@ -89,7 +92,7 @@ def _sector(arc: Arc, start: Array, values: OverSphere) -> Integrand:
     return integrand
 
 
-def farthest_start(arcs: Sequence[Arc]) -> Array:
+def farthest_start(arcs: Sequence[BoundaryArc]) -> Array:
     """A start whose opposite point is far from the boundary."""
     times = [np.linspace(arc.first, arc.last, SAMPLES) for arc in arcs]
     spots = np.concatenate([arc.piece(t)[0] for arc, t in zip(arcs, times, strict=True)])
@@ -101,12 +104,12 @@ def farthest_start(arcs: Sequence[Arc]) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Ellipsoid:
+class DirectedEllipsoid:
     """An ellipsoidal surface, linear @ (unit sphere) + shift, and the frame of integration."""
 
     linear: Array
     shift: Array
-    frame: Frame
+    frame: IntegralFrame
 
     def flux(self, y: Array) -> Array:
         """The integrand of `flux` times the solid angle, at directions (..., 3)."""

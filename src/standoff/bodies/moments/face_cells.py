@@ -6,16 +6,21 @@ from itertools import pairwise
 
 import numpy as np
 
-from standoff.bodies.moments.cells import Cell, integrate
+from standoff.bodies.moments.cells import MomentCell, integrate
 from standoff.bodies.moments.directions import (
-    Arc,
-    Ellipsoid,
+    BoundaryArc,
+    DirectedEllipsoid,
     farthest_start,
     part_cells,
     sphere_cells,
 )
-from standoff.bodies.moments.faces import Chart, TrimmingCurve, chart_cells, superellipsoid_cells
-from standoff.bodies.moments.flux import AREA, COLUMNS, Frame
+from standoff.bodies.moments.faces import (
+    MomentChart,
+    TrimmingCurve,
+    chart_cells,
+    superellipsoid_cells,
+)
+from standoff.bodies.moments.flux import AREA, COLUMNS, IntegralFrame
 from standoff.bodies.moments.tolerances import ANGLE_TOLERANCE
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.support_sets import curve_breaks
@@ -29,11 +34,11 @@ FLIPPED = np.where(np.arange(COLUMNS) == AREA, 1.0, -1.0)
 ANGLE_NODES = 20_000
 
 
-def face_cells(body: PackedParts, face: int, frame: Frame) -> list[Cell]:
+def face_cells(body: PackedParts, face: int, frame: IntegralFrame) -> list[MomentCell]:
     """The cells of one face's core."""
     row = int(body.ints[L.FACES]) + L.FACE_STRIDE * face
     first, count = (int(n) for n in body.ints[row : row + 2])
-    charts = [Chart(body, number, frame) for number in range(first, first + count)]
+    charts = [MomentChart(body, number, frame) for number in range(first, first + count)]
     surface = body.face_parts[face].charts[0]
     if surface.part_of == "ellipsoid":
         return _ellipsoid_cells(body, surface, charts)
@@ -42,9 +47,11 @@ def face_cells(body: PackedParts, face: int, frame: Frame) -> list[Cell]:
     return [cell for chart in charts for cell in chart_cells(chart)]
 
 
-def _ellipsoid_cells(body: PackedParts, surface: Surface, charts: list[Chart]) -> list[Cell]:
+def _ellipsoid_cells(
+    body: PackedParts, surface: Surface, charts: list[MomentChart]
+) -> list[MomentCell]:
     """A face of an ellipsoid: its edges, on the unit sphere, bound its directions."""
-    ellipsoid = Ellipsoid(surface.linear, surface.shift, charts[0].frame)
+    ellipsoid = DirectedEllipsoid(surface.linear, surface.shift, charts[0].frame)
     # a gnomonic chart's x_u × x_v points out of the unit sphere; for a pit, outward is inwards
     bulges = charts[0].outward * ellipsoid.sense > 0.0
 
@@ -62,7 +69,9 @@ def _ellipsoid_cells(body: PackedParts, surface: Surface, charts: list[Chart]) -
     for edge, side in sorted(bounding):
         part = body.edge_parts[edge].curve
         piece = ellipsoid.boundary(part)
-        arcs += [Arc(piece, float(a), float(b), side) for a, b in pairwise(curve_breaks(part))]
+        arcs += [
+            BoundaryArc(piece, float(a), float(b), side) for a, b in pairwise(curve_breaks(part))
+        ]
     if not arcs:
         return sphere_cells(values)
     start = farthest_start(arcs)

@@ -16,8 +16,8 @@ from typing import TypeVar
 import numpy as np
 import scipy
 
-from standoff.bodies.moments.cells import Cell, Integrand
-from standoff.bodies.moments.flux import Frame, flux, offset_areas
+from standoff.bodies.moments.cells import Integrand, MomentCell
+from standoff.bodies.moments.flux import IntegralFrame, flux, offset_areas
 from standoff.bodies.moments.tolerances import LEVEL_CURVE
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.tessellation import chart_row, surface_of
@@ -39,12 +39,12 @@ Value = TypeVar("Value")
 
 
 @dataclass(frozen=True, eq=False)
-class Chart:
+class MomentChart:
     """A chart of a body and the frame of integration."""
 
     body: PackedParts
     number: int
-    frame: Frame
+    frame: IntegralFrame
 
     def flux(self, u: Array, v: Array) -> Array:
         """The integrand of `flux` times du dv: (..., columns) for u and v of the same shape."""
@@ -76,7 +76,7 @@ class Chart:
         return range(first, first + int(row[L.CHART_N_COEDGES]))
 
 
-def _surface_flux(frame: Frame, jets: Array, outward: float | Array) -> Array:
+def _surface_flux(frame: IntegralFrame, jets: Array, outward: float | Array) -> Array:
     """The integrand of `flux` times du dv for jets (..., 6, 3) and signs (...) of x_u × x_v."""
     x, xu, xv, xuu, xuv, xvv = (jets[..., k, :] for k in range(6))
     areas = outward * crosses(xu, xv)
@@ -127,7 +127,7 @@ class TrimmingCurve:
         return self.parameters(np.linspace(*self.ends, SAMPLES))
 
 
-def chart_cells(chart: Chart) -> list[Cell]:
+def chart_cells(chart: MomentChart) -> list[MomentCell]:
     """The cells of a face with a single chart."""
     curves = [TrimmingCurve(chart.body, k) for k in chart.coedges]
     samples = [curve.samples() for curve in curves]
@@ -141,7 +141,7 @@ def chart_cells(chart: Chart) -> list[Cell]:
             level = float(curve.parameters(np.array([0.5 * (first + last)]))[1, 0])
             for low, high in _layers(start, level, breaks[1]):
                 strip = Strip(chart, curve, low, high)
-                cells.append(Cell(strips, (first, 0.0), (last, 1.0), piece=strip))
+                cells.append(MomentCell(strips, (first, 0.0), (last, 1.0), piece=strip))
     return cells
 
 
@@ -184,7 +184,7 @@ def _layers(start: float, level: float, breaks: Array) -> Iterator[tuple[float, 
 class Strip:
     """What lies between low and a trimming curve, or high unless it is nan."""
 
-    chart: Chart
+    chart: MomentChart
     curve: TrimmingCurve
     low: float
     high: float
@@ -194,7 +194,7 @@ class Strip:
 class Strips:
     """The integrand over strips of any faces, all at once."""
 
-    frame: Frame
+    frame: IntegralFrame
 
     def __call__(self, strips: Sequence[Strip], t: Array, s: Array) -> Array:
         rows = [(a.low, a.high, a.curve.side, a.chart.outward) for a in strips]
@@ -219,7 +219,7 @@ def _runs(values: Sequence[Value]) -> Iterator[tuple[Value, slice]]:
         first = last
 
 
-def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
+def superellipsoid_cells(charts: list[MomentChart], loop: bool) -> list[MomentCell]:
     """The cells of a superellipsoid's face that has several charts: all of it, or an octant.
 
     The charts' squares |u|, |v| <= 1 tile it. They are cut along the coordinate planes, where the
@@ -240,7 +240,7 @@ def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
             )
         signs = (1.0,)
     return [
-        Cell(_triangle(chart, su, sv, swap))
+        MomentCell(_triangle(chart, su, sv, swap))
         for chart in charts
         for su in signs
         for sv in signs
@@ -248,7 +248,7 @@ def superellipsoid_cells(charts: list[Chart], loop: bool) -> list[Cell]:
     ]
 
 
-def _is_octant(chart: Chart) -> bool:
+def _is_octant(chart: MomentChart) -> bool:
     """Do a chart's trimming curves run along u = 0 and v = 0, with the face at u, v >= 0?"""
     for k in chart.coedges:
         u, v = TrimmingCurve(chart.body, k).samples()[:2]
@@ -260,7 +260,7 @@ def _is_octant(chart: Chart) -> bool:
     return len(chart.coedges) > 0
 
 
-def _triangle(chart: Chart, su: float, sv: float, swap: bool) -> Integrand:
+def _triangle(chart: MomentChart, su: float, sv: float, swap: bool) -> Integrand:
     """Half of the square [0, su] x [0, sv], in parameters (r, w): (r, r w), or (r w, r)."""
 
     powers = [m for m in chart.surface.data[:2] if m % 2.0 != 0.0]

@@ -25,7 +25,7 @@ ROWS, COLS = [0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]
 
 
 @dataclass(frozen=True, eq=False)
-class Frame:
+class IntegralFrame:
     """The frame and unit of the integrals: x -> (x - centre) / reach.
 
     Attributes
@@ -43,7 +43,7 @@ class Frame:
     radius: float
 
 
-def flux(frame: Frame, points: Array, areas: Array) -> Array:
+def flux(frame: IntegralFrame, points: Array, areas: Array) -> Array:
     """The integrand: points (..., 3) and outward area vectors (..., 3) there, body frame."""
     x, a = (points - frame.centre) / frame.reach, areas / frame.reach**2
     weight = (x * a).sum(axis=-1, keepdims=True)

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 
 from standoff.bodies.charts import surface_normal
-from standoff.bodies.moments.cells import Cell
-from standoff.bodies.moments.directions import Arc, OverSphere, part_cells, sphere_cells
-from standoff.bodies.moments.faces import Chart, TrimmingCurve
-from standoff.bodies.moments.flux import Frame, flux
+from standoff.bodies.moments.cells import MomentCell
+from standoff.bodies.moments.directions import BoundaryArc, OverSphere, part_cells, sphere_cells
+from standoff.bodies.moments.faces import MomentChart, TrimmingCurve
+from standoff.bodies.moments.flux import IntegralFrame, flux
 from standoff.bodies.moments.tolerances import NORMALS_RESOLVED
 from standoff.bodies.packed_parts import PackedParts
 from standoff.bodies.support_sets import curve_breaks
@@ -50,7 +50,7 @@ class Fan:
         return np.asarray(np.cos(angles) * self.first[:, None] + np.sin(angles) * aside[:, None])
 
 
-def skin_cells(body: PackedParts, frame: Frame) -> list[Cell]:
+def skin_cells(body: PackedParts, frame: IntegralFrame) -> list[MomentCell]:
     """The cells of canals and parts of spheres of a body with a swept radius."""
     if body.n_vertices == 1 and not body.n_edges and not body.n_faces:
         return sphere_cells(_ball(frame, body.vertex_points[0]))
@@ -119,11 +119,11 @@ def _normal(body: PackedParts, coedge: int, tangent: Array, t: float) -> Array:
     curve = TrimmingCurve(body, coedge)
     number = int(body.ints[curve.row + L.COEDGE_CHART])
     u, v = curve.parameters(np.array([t]))[:2, 0]
-    surface = Chart(body, number, Frame(np.zeros(3), 1.0, 0.0)).surface
+    surface = MomentChart(body, number, IntegralFrame(np.zeros(3), 1.0, 0.0)).surface
     return _outward(body, number) * surface_normal(surface, float(u), float(v))
 
 
-def _canal_cells(body: PackedParts, edge: int, frame: Frame) -> list[Cell]:
+def _canal_cells(body: PackedParts, edge: int, frame: IntegralFrame) -> list[MomentCell]:
     """The canal along an edge: x + r n with area vectors r (|x_t| - r n · x_tt / |x_t|) n dt dα."""
     if not _has_fan(body, edge):
         return []
@@ -138,17 +138,17 @@ def _canal_cells(body: PackedParts, edge: int, frame: Frame) -> list[Cell]:
         return found.reshape(*t.shape, s.shape[1], -1)
 
     ends = curve_breaks(body.edge_parts[edge].curve)
-    return [Cell(values, (float(a), 0.0), (float(b), 1.0)) for a, b in pairwise(ends)]
+    return [MomentCell(values, (float(a), 0.0), (float(b), 1.0)) for a, b in pairwise(ends)]
 
 
-def _ball(frame: Frame, point: Array) -> OverSphere:
+def _ball(frame: IntegralFrame, point: Array) -> OverSphere:
     def values(n: Array) -> Array:
         return flux(frame, point + frame.radius * n, frame.radius**2 * n)
 
     return values
 
 
-def _vertex_cells(body: PackedParts, vertex: int, frame: Frame) -> list[Cell]:
+def _vertex_cells(body: PackedParts, vertex: int, frame: IntegralFrame) -> list[MomentCell]:
     """The part of a sphere about a vertex.
 
     All its normals make at most 90 degrees with the direction from a point inside the core to the
@@ -160,9 +160,9 @@ def _vertex_cells(body: PackedParts, vertex: int, frame: Frame) -> list[Cell]:
         for end, number in ((part.curve.first, part.first), (part.curve.last, part.last)):
             if number == vertex and _has_fan(body, edge):
                 sign = -1 if end == part.curve.first else 1
-                arcs.append(Arc(_turning(body, edge, end), 0.0, 1.0, sign))
+                arcs.append(BoundaryArc(_turning(body, edge, end), 0.0, 1.0, sign))
     for number in range(int(body.ints[L.N_CHARTS])):
-        chart = Chart(body, number, frame)
+        chart = MomentChart(body, number, frame)
         arcs += [arc for k in chart.coedges for arc in _collapsed_arcs(chart, k, vertex)]
     away = point - frame.centre
     start = away / float(np.linalg.norm(away))
@@ -180,7 +180,7 @@ def _turning(body: PackedParts, edge: int, end: float) -> Callable[[Array], tupl
     return piece
 
 
-def _collapsed_arcs(chart: Chart, coedge: int, vertex: int) -> list[Arc]:
+def _collapsed_arcs(chart: MomentChart, coedge: int, vertex: int) -> list[BoundaryArc]:
     """The normals along a collapsed side, if it is at the vertex."""
     curve = TrimmingCurve(chart.body, coedge)
     if curve.edge != -1 - vertex:
@@ -192,11 +192,11 @@ def _collapsed_arcs(chart: Chart, coedge: int, vertex: int) -> list[Arc]:
     cuts = [first, *(float(b) for b in np.sort(inner) if first < b < last), last]
     # the vertex's normals lie on the other side of the curve than the face's
     sense = -int(curve.side * _outward(chart.body, chart.number))
-    return [Arc(_followed(chart, curve, a, b), a, b, sense) for a, b in pairwise(cuts)]
+    return [BoundaryArc(_followed(chart, curve, a, b), a, b, sense) for a, b in pairwise(cuts)]
 
 
 def _followed(
-    chart: Chart, curve: TrimmingCurve, first: float, last: float
+    chart: MomentChart, curve: TrimmingCurve, first: float, last: float
 ) -> Callable[[Array], tuple[Array, Array]]:
     """Normals along a collapsed side and their derivatives, by polynomial interpolation."""
     surface, outward = chart.surface, _outward(chart.body, chart.number)

@@ -19,8 +19,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from standoff.best_first import Part, best_first
-from standoff.bodies.proofs.boxes import ROOT, Cell, CurvatureBound, curvature_bound, deep_enough
+from standoff.best_first import SearchPart, best_first
+from standoff.bodies.proofs.boxes import (
+    ROOT,
+    CurvatureBound,
+    DyadicBox,
+    curvature_bound,
+    deep_enough,
+)
 from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
 from standoff.bodies.proofs.normals import in_hemisphere
@@ -39,7 +45,7 @@ from standoff.geometry.nurbs import NurbsSurface
 from standoff.geometry.validation import Domain
 from standoff.typing import Array
 
-Box = tuple[Cell, CurvatureBound]
+Box = tuple[DyadicBox, CurvatureBound]
 
 # Boxes halved in one span before the rest counts as dents as deep as their bounds.
 MOST_SPLITS = 1000
@@ -48,7 +54,7 @@ FINE_SPLITS = 150
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class BernsteinSpan:
     """A span with its homogeneous points and forms, scaled so that the surface has size one.
 
     `moved` is the length by which the points of a pole were moved together.
@@ -59,7 +65,7 @@ class Piece:
     moved: float
     forms: Forms
 
-    def parameters(self, cell: Cell) -> tuple[float, float]:
+    def parameters(self, cell: DyadicBox) -> tuple[float, float]:
         """(u, v) of the surface at a box's centre."""
         s, t = cell.centre
         u0, u1, v0, v1 = self.domain
@@ -73,7 +79,7 @@ class SpanBound:
     dents: list[Dent]
     convex: bool
     found: float
-    cell: Cell
+    cell: DyadicBox
 
 
 def prove(surface: NurbsSurface, outward: int | None = None) -> PatchProof:
@@ -167,7 +173,7 @@ def _grid(surface: NurbsSurface, spare: bool) -> tuple[Grid, float, float]:
     return Grid(us, vs, h.reshape(len(us) - 1, len(vs) - 1, *h.shape[1:])), size, reach
 
 
-def _pieces(grid: Grid, reach: float) -> list[Piece]:
+def _pieces(grid: Grid, reach: float) -> list[BernsteinSpan]:
     return [
         _piece((u0, u1, v0, v1), grid.points[i, j], reach)
         for i, (u0, u1) in enumerate(pairwise(grid.us))
@@ -175,14 +181,14 @@ def _pieces(grid: Grid, reach: float) -> list[Piece]:
     ]
 
 
-def _piece(domain: Domain, points: Array, reach: float) -> Piece:
+def _piece(domain: Domain, points: Array, reach: float) -> BernsteinSpan:
     points, moved = with_poles(points / points[3].max())
-    return Piece(domain, points, moved, forms_of(points, reach))
+    return BernsteinSpan(domain, points, moved, forms_of(points, reach))
 
 
 def _straightened(
-    grid: Grid, pieces: Sequence[Piece], reach: float
-) -> tuple[list[Piece], Nearness] | None:
+    grid: Grid, pieces: Sequence[BernsteinSpan], reach: float
+) -> tuple[list[BernsteinSpan], Nearness] | None:
     """The patch as one ruled by straight lines, if it is so up to rounding, and how near it is."""
     for along_u in (False, True):
         ruled = ruled_along(grid, along_u, ROUNDED_POINTS * max(reach, 1.0))
@@ -212,21 +218,21 @@ def _bends(forms: Forms) -> Array:
     return bends
 
 
-def _flat(pieces: Sequence[Piece], sense: int) -> bool:
+def _flat(pieces: Sequence[BernsteinSpan], sense: int) -> bool:
     """Is the patch convex to both sides?"""
     return all(curvature_bound(piece.forms, ROOT, -sense).convex for piece in pieces)
 
 
-def _search(piece: Piece, sense: int) -> SpanBound:
+def _search(piece: BernsteinSpan, sense: int) -> SpanBound:
     """Halve the box that may dent most, until all are proven or the dents are known well enough."""
 
-    def part(cell: Cell) -> Part[Box]:
+    def part(cell: DyadicBox) -> SearchPart[Box]:
         bound = curvature_bound(piece.forms, cell, sense)
         known = bound.least >= 0.0 or (bound.convex and bound.tight)
         closed = known or deep_enough(piece.forms, cell)
-        return Part(_weight(bound), (cell, bound), bound.found, closed)
+        return SearchPart(_weight(bound), (cell, bound), bound.found, closed)
 
-    def halves(chosen: list[Part[Box]]) -> list[Part[Box]]:
+    def halves(chosen: list[SearchPart[Box]]) -> list[SearchPart[Box]]:
         cell, bound = chosen[0].body
         return [part(half) for half in cell.halves(bound.along_u)]
 
@@ -249,7 +255,7 @@ def _weight(bound: CurvatureBound) -> float:
     return -min(by_curvature, bound.turn)
 
 
-def _dent(piece: Piece, cell: Cell, bound: CurvatureBound) -> Dent:
+def _dent(piece: BernsteinSpan, cell: DyadicBox, bound: CurvatureBound) -> Dent:
     h = cell.part(piece.points)
     x = (h[:3] / h[3]).reshape(3, -1)
     low, high = x.min(axis=1), x.max(axis=1)

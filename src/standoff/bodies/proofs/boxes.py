@@ -25,7 +25,7 @@ DEEPEST_APEX = 44
 
 
 @dataclass(frozen=True)
-class Cell:
+class DyadicBox:
     """The dyadic box [i, i + 1] / 2^m x [j, j + 1] / 2^n of the unit square: u = (m, i)."""
 
     u: tuple[int, int]
@@ -40,11 +40,11 @@ class Cell:
         a, b = 0.5 ** self.u[0], 0.5 ** self.v[0]
         return self.u[1] * a, (self.u[1] + 1) * a, self.v[1] * b, (self.v[1] + 1) * b
 
-    def halves(self, along_u: bool) -> tuple[Cell, Cell]:
+    def halves(self, along_u: bool) -> tuple[DyadicBox, DyadicBox]:
         (m, i), (n, j) = self.u, self.v
         if along_u:
-            return Cell((m + 1, 2 * i), self.v), Cell((m + 1, 2 * i + 1), self.v)
-        return Cell(self.u, (n + 1, 2 * j)), Cell(self.u, (n + 1, 2 * j + 1))
+            return DyadicBox((m + 1, 2 * i), self.v), DyadicBox((m + 1, 2 * i + 1), self.v)
+        return DyadicBox(self.u, (n + 1, 2 * j)), DyadicBox(self.u, (n + 1, 2 * j + 1))
 
     def part(self, c: Array) -> Array:
         """The coefficients on this box of a polynomial given on the unit square."""
@@ -54,7 +54,7 @@ class Cell:
         return part
 
 
-ROOT = Cell((0, 0), (0, 0))
+ROOT = DyadicBox((0, 0), (0, 0))
 
 
 @lru_cache(maxsize=1024)
@@ -92,7 +92,7 @@ class CurvatureBound:
     along_u: bool
 
 
-def curvature_bound(forms: Forms, cell: Cell, sense: int) -> CurvatureBound:
+def curvature_bound(forms: Forms, cell: DyadicBox, sense: int) -> CurvatureBound:
     """Bound the least curvature on a box; `sense` as in PatchProof."""
     u, v = cell.centre
     jacobian = bernstein.value(forms.jacobian, u, v)
@@ -151,7 +151,7 @@ def _turn(normal: Array, forms: Forms) -> float:
     return 2.0 * float(np.arcsin(min(sine, 1.0)))
 
 
-def deep_enough(forms: Forms, cell: Cell) -> bool:
+def deep_enough(forms: Forms, cell: DyadicBox) -> bool:
     """Has a box been halved as often as is useful?"""
     apex = _apex_distance(forms, cell.ends) == 0.0
     return max(cell.u[0], cell.v[0]) >= (DEEPEST_APEX if apex else DEEPEST)
@@ -212,7 +212,7 @@ def _allowed(forms: Forms, normal: float, frame: Array) -> float:
     return (forms.noise[0] * normal + forms.noise[1]) * float(np.linalg.norm(frame, 2)) ** 2
 
 
-def _size(forms: Forms, cell: Cell, normal: Array, columns: Array) -> tuple[float, float]:
+def _size(forms: Forms, cell: DyadicBox, normal: Array, columns: Array) -> tuple[float, float]:
     """A lower bound of |T| I / w^3 over a box, and how much J (its columns in a frame) varies.
 
     P over the first, and over the distance from a sharp apex, bounds the curvature.

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.best_first import Part, best_first
+from standoff.best_first import SearchPart, best_first
 from standoff.bodies.proofs.defects import Dent, dents_total
 from standoff.bodies.proofs.formulas.forms import (
     CurvatureForms,
@@ -25,7 +25,12 @@ from standoff.bodies.proofs.formulas.forms import (
     forms_as_written,
 )
 from standoff.bodies.proofs.formulas.normals import hemisphere_axis, least_cosines
-from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
+from standoff.bodies.proofs.formulas.signs import (
+    FIRST_GRID,
+    ExpressionBounds,
+    sign_of_product,
+    widest,
+)
 from standoff.bodies.proofs.formulas.taylor import TaylorBounds, curvature
 from standoff.bodies.proofs.proof import PatchProof
 from standoff.bodies.proofs.tolerances import BEND_ROUNDOFF, FEW_OPERATIONS
@@ -128,10 +133,10 @@ def _bent(formula: Formula, domain: tuple[float, ...], sense: int) -> Bent:
         least = -np.inf if hollow else 0.0  # no bound needed: it is no part of a convex body
         return Bent(not hollow, least, middle, sense or -mean, NO_DENTS, np.zeros(0))
     not_saddled = gauss > 0 or forms.gauss == 0
-    return _Search(formula, forms, domain, not_saddled, mean, sense or -mean).run()
+    return _BoxSearch(formula, forms, domain, not_saddled, mean, sense or -mean).run()
 
 
-class _Search:
+class _BoxSearch:
     """Best first: the boxes with the worst bounds are halved."""
 
     def __init__(
@@ -155,7 +160,7 @@ class _Search:
         self.sense = sense or -int(np.sign(side)) or 1
         self.enough = -BEND_ROUNDOFF / self.diameter
 
-    def parts(self, boxes: Boxes, wholes: Array | float = -np.inf) -> list[Part[Box]]:
+    def parts(self, boxes: Boxes, wholes: Array | float = -np.inf) -> list[SearchPart[Box]]:
         """Boxes with lower bounds of k, and its values at their middles.
 
         `wholes` are the bounds (n,) of the boxes that these are parts of: the bound of a part is
@@ -170,11 +175,11 @@ class _Search:
         axis = widest(boxes, slopes, self.size)
         rows = zip(boxes.low.tolist(), boxes.high.tolist(), axis.tolist(), strict=True)
         return [
-            Part(k, box, at, k >= self.enough)
+            SearchPart(k, box, at, k >= self.enough)
             for k, box, at in zip(bound.tolist(), rows, seen.tolist(), strict=True)
         ]
 
-    def halves(self, chosen: list[Part[Box]]) -> list[Part[Box]]:
+    def halves(self, chosen: list[SearchPart[Box]]) -> list[SearchPart[Box]]:
         boxes, axis = _boxes(chosen)
         bound = np.array([part.bound for part in chosen])
         return self.parts(boxes.halves(axis), np.concatenate([bound, bound]))
@@ -218,7 +223,7 @@ class _Search:
         return Bent(least >= enough, least, (u, v), self.sense, _boxes(dents)[0], bounds)
 
 
-def _boxes(parts: list[Part[Box]]) -> tuple[Boxes, Any]:
+def _boxes(parts: list[SearchPart[Box]]) -> tuple[Boxes, Any]:
     """The boxes (n,) of parts, and the axis along which to halve each."""
     low = np.reshape([part.body[0] for part in parts], (-1, 2))
     high = np.reshape([part.body[1] for part in parts], (-1, 2))
@@ -227,7 +232,7 @@ def _boxes(parts: list[Part[Box]]) -> tuple[Boxes, Any]:
 
 def _sharper(
     formula: Formula, forms: CurvatureForms, domain: tuple[float, ...]
-) -> Bounds | TaylorBounds:
+) -> ExpressionBounds | TaylorBounds:
     """Bounds of K, H^2 and the sign of H: from the exact forms, as written, or by Taylor series.
 
     Multiplied out, a formula around a distant centre loses digits to cancellation. A long formula
@@ -235,7 +240,7 @@ def _sharper(
     """
     boxes = grid(domain, 2 * FIRST_GRID)
 
-    def width(bounds: Bounds | TaylorBounds) -> float:
+    def width(bounds: ExpressionBounds | TaylorBounds) -> float:
         value = bounds(boxes)[0]
         with np.errstate(invalid="ignore"):
             by_box = (value.hi - value.lo)[:2].max(axis=0)
@@ -246,9 +251,9 @@ def _sharper(
         finite = np.isfinite(by_box)
         return float(np.log(by_box[finite] + TINY).mean()) if finite.any() else UNKNOWN
 
-    def by_expressions(f: CurvatureForms) -> Bounds:
+    def by_expressions(f: CurvatureForms) -> ExpressionBounds:
         side = sympy_module().Mul(*f.mean_signs)
-        return Bounds([f.gauss, f.mean_square, side], formula.variables)
+        return ExpressionBounds([f.gauss, f.mean_square, side], formula.variables)
 
     taylor = TaylorBounds(formula, domain, curvature)
     least = width(taylor)

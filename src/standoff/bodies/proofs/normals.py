@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from standoff.bodies.proofs.boxes import ROOT, Cell
+from standoff.bodies.proofs.boxes import ROOT, DyadicBox
 from standoff.bodies.proofs.forms import Forms
 from standoff.bodies.proofs.tolerances import HEIGHT_ROUNDING
 from standoff.geometry import bernstein
@@ -46,7 +46,7 @@ def _above(forms: Forms, axis: Array) -> bool:
     """Is axis @ normal positive over the patch, apart from its singular corners?"""
     heights = np.tensordot(axis, forms.normal, 1)
     floor = -HEIGHT_ROUNDING * float(np.abs(forms.normal).max())
-    cells: list[Cell] = [ROOT]
+    cells: list[DyadicBox] = [ROOT]
     count = 0
     while cells:
         cell = cells.pop()

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from standoff.bodies.proofs.boxes import Cell
+from standoff.bodies.proofs.boxes import DyadicBox
 from standoff.bodies.proofs.forms import Forms, forms_of, with_poles
 from standoff.bodies.proofs.tolerances import NORMAL_ROUNDING
 from standoff.geometry import bernstein
@@ -146,7 +146,7 @@ def _turn_between(one: Array, other: Array, along_u: bool) -> float:
     greatest = 0.0
     for k in range(2**SPAN_HALVINGS):
         across = (SPAN_HALVINGS, k)
-        cell = Cell((0, 0), across) if along_u else Cell(across, (0, 0))
+        cell = DyadicBox((0, 0), across) if along_u else DyadicBox(across, (0, 0))
         normal = cell.part(other)
         apart = float(np.linalg.norm(cell.part(one - other), axis=0).max())
         axis = bernstein.value(normal, 0.5, 0.5)

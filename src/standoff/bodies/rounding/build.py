@@ -49,7 +49,7 @@ def rounded_boundary(body: Body) -> Rounded:
     return _Builder(body).built()
 
 
-class _Side(NamedTuple):
+class _RoundedSide(NamedTuple):
     """An edge moved out with one of its faces: its curve, its unit normals at both ends, and how
     the face's loop runs along it."""
 
@@ -105,8 +105,8 @@ class _Builder:
 
     # --- edges of the core
 
-    def _sides(self) -> dict[int, list[_Side]]:
-        found: dict[int, list[_Side]] = {}
+    def _sides(self) -> dict[int, list[_RoundedSide]]:
+        found: dict[int, list[_RoundedSide]] = {}
         edges = self.body.edge_parts
         for number, face in enumerate(self.body.face_parts):
             for entry, (j, sense) in enumerate(face.loop):
@@ -117,7 +117,7 @@ class _Builder:
                 if moved is None:
                     raise self._refused("edge", j, type(curve).__name__)
                 found.setdefault(j, []).append(
-                    _Side(number, sense, moved, (normals[0], normals[-1]))
+                    _RoundedSide(number, sense, moved, (normals[0], normals[-1]))
                 )
         return found
 
@@ -134,7 +134,7 @@ class _Builder:
         places = [pcurve.point(float(t))[:2] for t in spots]
         return self._outward(number) * np.array([surface_normal(surface, u, v) for u, v in places])
 
-    def _edge(self, number: int, sides: list[_Side]) -> None:
+    def _edge(self, number: int, sides: list[_RoundedSide]) -> None:
         given = self.body.edge_parts[number]
         by_sense = sorted(sides, key=lambda side: -side.sense)
         if [side.sense for side in by_sense] != [1, -1]:
@@ -155,7 +155,7 @@ class _Builder:
         if not smooth:
             self._strip(number, one, other)
 
-    def _strip(self, number: int, one: _Side, other: _Side) -> None:
+    def _strip(self, number: int, one: _RoundedSide, other: _RoundedSide) -> None:
         """The part of a cylinder or a torus between the faces of a sharp edge."""
         given = self.body.edge_parts[number]
         curve = given.curve

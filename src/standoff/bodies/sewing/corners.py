@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
-from standoff.bodies.sewing.patches import Patch
-from standoff.bodies.sewing.sides import SIDE_NAMES, Side
+from standoff.bodies.sewing.patches import SewnPatch
+from standoff.bodies.sewing.sides import SIDE_NAMES, PatchSide
 from standoff.bodies.tolerances import MAX_SPREAD
 from standoff.errors import BodyError
 from standoff.typing import Array
@@ -28,7 +28,7 @@ class Stretch:
 
     patch: int
     number: int
-    side: Side
+    side: PatchSide
     first: int
     last: int
 
@@ -38,7 +38,7 @@ class Stretch:
 
 
 @dataclass(frozen=True, eq=False)
-class Outline:
+class SewnOutline:
     """All vertices, every patch's stretches for each side, and its collapsed sides (side, vertex).
 
     spread : the greatest distance between a corner and its vertex, length.
@@ -46,11 +46,11 @@ class Outline:
 
     vertices: Array
     stretches: list[list[Stretch]]
-    collapsed: list[list[tuple[Side, int]]]
+    collapsed: list[list[tuple[PatchSide, int]]]
     spread: float
 
 
-def outline(patches: Sequence[Patch], tolerance: float) -> Outline:
+def outline(patches: Sequence[SewnPatch], tolerance: float) -> SewnOutline:
     """Merge corners within the tolerance and cut sides where corners of other sides lie on them."""
     sides = [[patch.side(name) for name in SIDE_NAMES] for patch in patches]
     flat = [[side.collapsed(tolerance) for side in row] for row in sides]
@@ -58,7 +58,7 @@ def outline(patches: Sequence[Patch], tolerance: float) -> Outline:
     number, vertices, spread = _merge(patches, corners, flat, tolerance)
     tree = scipy.spatial.KDTree(vertices)
     stretches: list[list[Stretch]] = []
-    collapsed: list[list[tuple[Side, int]]] = []
+    collapsed: list[list[tuple[PatchSide, int]]] = []
     for p, row in enumerate(sides):
         stretches.append([])
         collapsed.append([])
@@ -70,17 +70,17 @@ def outline(patches: Sequence[Patch], tolerance: float) -> Outline:
                 collapsed[p].append((side, start))
                 continue
             stretches[p] += _cut(p, k, side, start, stop, vertices, tree, tolerance)
-    return Outline(vertices, stretches, collapsed, spread)
+    return SewnOutline(vertices, stretches, collapsed, spread)
 
 
-def _corner(patch: Patch, k: int) -> Array:
+def _corner(patch: SewnPatch, k: int) -> Array:
     domain = patch.surface.domain
     i, j = _CORNERS[k]
     return patch.surface.jet(domain[i], domain[j])[0]
 
 
 def _merge(
-    patches: Sequence[Patch], corners: Array, flat: list[list[bool]], tolerance: float
+    patches: Sequence[SewnPatch], corners: Array, flat: list[list[bool]], tolerance: float
 ) -> tuple[Array, Array, float]:
     """(vertex of every corner, vertex points, spread)."""
     pairs = [(int(a), int(b)) for a, b in scipy.spatial.KDTree(corners).query_pairs(tolerance)]
@@ -114,7 +114,7 @@ def _merge(
 def _cut(
     patch: int,
     number: int,
-    side: Side,
+    side: PatchSide,
     start: int,
     stop: int,
     vertices: Array,

@@ -14,7 +14,7 @@ import numpy as np
 import scipy
 
 from standoff.bodies.sewing.corners import Stretch
-from standoff.bodies.sewing.sides import Side, in_spans
+from standoff.bodies.sewing.sides import PatchSide, in_spans
 from standoff.bodies.tolerances import (
     AFFINE_SIDE,
     SPLINE_MISS,
@@ -52,7 +52,7 @@ class Correspondence:
     residual: float
 
 
-def isoline(side: Side) -> Pcurve:
+def isoline(side: PatchSide) -> Pcurve:
     """The pcurve of an edge on its first side, which is exact."""
     return _straight(side, np.array([1.0, 0.0]), np.array([0.0, 1.0]))
 
@@ -81,7 +81,7 @@ def correspond(one: Stretch, other: Stretch, size: float) -> Correspondence:
     return _spline(one, other, sense, max(SPLINE_MISS * size, SPLINE_SHARE * near))
 
 
-def _times(side: Side, other: Side) -> Array:
+def _times(side: PatchSide, other: PatchSide) -> Array:
     """Parameters of a side where it is compared: at CHECKS and in every span of both sides."""
     times = side.first + CHECKS * (side.last - side.first)
     if len(side.breaks) > 2 or len(other.breaks) > 2:
@@ -90,7 +90,7 @@ def _times(side: Side, other: Side) -> Array:
     return times
 
 
-def _farthest(side: Side, parameters: Array, points: list[Array]) -> float:
+def _farthest(side: PatchSide, parameters: Array, points: list[Array]) -> float:
     return max(
         float(np.linalg.norm(side.point(float(s)) - x))
         for s, x in zip(parameters, points, strict=True)
@@ -109,7 +109,7 @@ def _moebius(x: Array, s: Array, s0: float, s1: float) -> tuple[Array, Array]:
     return np.array([k * s1 - s0, s0]), np.array([k - 1.0, 1.0])
 
 
-def _straight(side: Side, row: Array, scale: Array) -> Pcurve:
+def _straight(side: PatchSide, row: Array, scale: Array) -> Pcurve:
     """The isoline at (row . (t, 1))/(scale . (t, 1)) of its free parameter."""
     moving = np.array([row[0], 0.0, row[1]])
     weight = np.array([scale[0], 0.0, scale[1]])

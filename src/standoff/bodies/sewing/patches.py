@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from standoff.bodies.proofs import PatchProof, prove_patch
-from standoff.bodies.sewing.sides import SIDE_NAMES, Side, gap
+from standoff.bodies.sewing.sides import SIDE_NAMES, PatchSide, gap
 from standoff.checks.real_numbers import shown
 from standoff.errors import BodyError
 from standoff.geometry.surfaces import Surface
@@ -24,7 +24,7 @@ GRID = 5
 
 
 @dataclass(frozen=True, eq=False)
-class Patch:
+class SewnPatch:
     """A surface with a finite domain; `given` is its number in the caller's list."""
 
     surface: Surface
@@ -42,8 +42,8 @@ class Patch:
         u0, u1, v0, v1 = self.surface.domain
         return f"patch {self.given} (u {u0:.6g}..{u1:.6g}, v {v0:.6g}..{v1:.6g})"
 
-    def side(self, name: str) -> Side:
-        return Side.of(self.surface, self.label, name)
+    def side(self, name: str) -> PatchSide:
+        return PatchSide.of(self.surface, self.label, name)
 
     def middle(self, along: str) -> float:
         """Where to halve it: at the middle of its parameter or, if uneven, of its longer side."""
@@ -51,14 +51,16 @@ class Patch:
         side = max((self.side(name) for name in ends), key=lambda side: side.length)
         return side.middle if side.uneven else 0.5 * (side.first + side.last)
 
-    def halves(self, along: str) -> tuple[Patch, Patch]:
+    def halves(self, along: str) -> tuple[SewnPatch, SewnPatch]:
         u0, u1, v0, v1 = self.surface.domain
         middle = self.middle(along)
         if along == "u":
             parts = (u0, middle, v0, v1), (middle, u1, v0, v1)
         else:
             parts = (u0, u1, v0, middle), (u0, u1, middle, v1)
-        first, second = (Patch(self.surface.restricted(*part), self.given, True) for part in parts)
+        first, second = (
+            SewnPatch(self.surface.restricted(*part), self.given, True) for part in parts
+        )
         return first, second
 
 
@@ -91,9 +93,9 @@ def check_patches(patches: Sequence[Any]) -> None:
             )
 
 
-def cut_patches(patches: Sequence[Surface], tolerance: float) -> tuple[list[Patch], list[str]]:
+def cut_patches(patches: Sequence[Surface], tolerance: float) -> tuple[list[SewnPatch], list[str]]:
     """Patches that are smooth inside, with four open sides, and notes on what was cut."""
-    found: list[Patch] = []
+    found: list[SewnPatch] = []
     notes: list[str] = []
     for k, surface in enumerate(patches):
         waiting = [(piece, 0) for piece in _at_breaks(surface, k)]
@@ -119,19 +121,19 @@ def cut_patches(patches: Sequence[Surface], tolerance: float) -> tuple[list[Patc
     return found, notes
 
 
-def _at_breaks(surface: Surface, given: int) -> list[Patch]:
+def _at_breaks(surface: Surface, given: int) -> list[SewnPatch]:
     us, vs = surface.breaks()
     if not len(us) and not len(vs):
-        return [Patch(surface, given)]
+        return [SewnPatch(surface, given)]
     u0, u1, v0, v1 = surface.domain
     return [
-        Patch(surface.restricted(a, b, c, d), given, True)
+        SewnPatch(surface.restricted(a, b, c, d), given, True)
         for a, b in pairwise([u0, *us, u1])
         for c, d in pairwise([v0, *vs, v1])
     ]
 
 
-def _way_to_halve(patch: Patch, tolerance: float) -> tuple[str, str] | None:
+def _way_to_halve(patch: SewnPatch, tolerance: float) -> tuple[str, str] | None:
     """("u" | "v", reason) if a patch must be halved, else None."""
     sides = {name: patch.side(name) for name in SIDE_NAMES}
     _check_extent(patch, sides, tolerance)
@@ -148,7 +150,7 @@ def _way_to_halve(patch: Patch, tolerance: float) -> tuple[str, str] | None:
     return None
 
 
-def _check_extent(patch: Patch, sides: dict[str, Side], tolerance: float) -> None:
+def _check_extent(patch: SewnPatch, sides: dict[str, PatchSide], tolerance: float) -> None:
     points = grid_points(patch.surface)
     extent = float(np.linalg.norm(np.ptp(points.reshape(-1, 3), axis=0)))
     if not np.isfinite(points).all():

@@ -11,9 +11,9 @@ import scipy
 from numpy.typing import NDArray
 
 from standoff.bodies.proofs import PatchProof
-from standoff.bodies.sewing.corners import Outline, Stretch, outline
+from standoff.bodies.sewing.corners import SewnOutline, Stretch, outline
 from standoff.bodies.sewing.correspondence import Correspondence, correspond, isoline
-from standoff.bodies.sewing.patches import Patch, check_patches, cut_patches, grid_points
+from standoff.bodies.sewing.patches import SewnPatch, check_patches, cut_patches, grid_points
 from standoff.bodies.sewing.shell import check_shells, outward_senses
 from standoff.bodies.sewing.sides import SENSES, gap
 from standoff.bodies.tolerances import MAX_SPREAD, SEWING_TOLERANCE, WIDEST_SEAM
@@ -92,7 +92,7 @@ def sew(patches: Sequence[Any], tolerance: float | None = None, *, several: bool
 
 
 def _sewn(
-    cut: list[Patch], notes: list[str], size: float, tolerance: float, several: bool = False
+    cut: list[SewnPatch], notes: list[str], size: float, tolerance: float, several: bool = False
 ) -> Sewn:
     shape = outline(cut, tolerance)
     pairs = match([s for row in shape.stretches for s in row], tolerance)
@@ -193,8 +193,8 @@ def _size(patches: Sequence[Surface]) -> float:
 
 
 def _faces(
-    patches: Sequence[Patch],
-    shape: Outline,
+    patches: Sequence[SewnPatch],
+    shape: SewnOutline,
     pairs: Sequence[tuple[Stretch, Stretch]],
     found: Sequence[Correspondence],
     sign: Sequence[int],
@@ -223,7 +223,7 @@ def _faces(
 MAX_NAMED = 3
 
 
-class Gap(NamedTuple):
+class SideGap(NamedTuple):
     """Two open sides, at least one of them nearest to the other, and their distance, length."""
 
     one: str
@@ -237,11 +237,11 @@ class OpenShell(Exception):
     Attributes
     ----------
     sides : list of str
-    gaps : list of Gap
+    gaps : list of SideGap
         From each to the nearest open side; none if only one side is open.
     """
 
-    def __init__(self, sides: list[str], gaps: list[Gap]) -> None:
+    def __init__(self, sides: list[str], gaps: list[SideGap]) -> None:
         super().__init__(sides, gaps)
         self.sides, self.gaps = sides, gaps
 
@@ -314,7 +314,9 @@ def _open_shell(stretches: Sequence[Stretch], loose: list[int]) -> OpenShell:
             m = min(misses, key=lambda m: misses[m])
             pair = min(k, m), max(k, m)
             apart[pair] = max(apart.get(pair, 0.0), misses[m])
-    gaps = [Gap(open_sides[a].label, open_sides[b].label, miss) for (a, b), miss in apart.items()]
+    gaps = [
+        SideGap(open_sides[a].label, open_sides[b].label, miss) for (a, b), miss in apart.items()
+    ]
     return OpenShell([side.label for side in open_sides], gaps)
 
 

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import scipy
 
-from standoff.bodies.sewing.corners import Outline, Stretch
-from standoff.bodies.sewing.patches import Patch
+from standoff.bodies.sewing.corners import SewnOutline, Stretch
+from standoff.bodies.sewing.patches import SewnPatch
 from standoff.bodies.sewing.sides import SENSES
 from standoff.bodies.tolerances import LEAST_THICKNESS
 from standoff.errors import BodyError
@@ -23,7 +23,7 @@ MOST_NAMED = 6
 
 
 def check_shells(
-    patches: Sequence[Patch], shape: Outline, pairs: Pairs, several: bool
+    patches: Sequence[SewnPatch], shape: SewnOutline, pairs: Pairs, several: bool
 ) -> list[list[int]]:
     """The patches of each shell. Raises BodyError for more than one shell unless `several`, and for
     patches that only touch at a vertex."""
@@ -41,13 +41,13 @@ def check_shells(
     return shells
 
 
-def _names(patches: Sequence[Patch], numbers: Sequence[int]) -> str:
+def _names(patches: Sequence[SewnPatch], numbers: Sequence[int]) -> str:
     given = sorted({patches[k].given for k in numbers})
     dots = ", ..." if len(given) > MOST_NAMED else ""
     return "patches " + ", ".join(str(k) for k in given[:MOST_NAMED]) + dots
 
 
-def _check_fans(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
+def _check_fans(patches: Sequence[SewnPatch], shape: SewnOutline, pairs: Pairs) -> None:
     """Check that the patches around every vertex form a single ring."""
     edge = {id(s): j for j, pair in enumerate(pairs) for s in pair}
     links: list[tuple[int, int]] = []
@@ -77,7 +77,7 @@ def _check_fans(patches: Sequence[Patch], shape: Outline, pairs: Pairs) -> None:
             )
 
 
-def _ring(shape: Outline, patch: int) -> list[tuple[Stretch, int]]:
+def _ring(shape: SewnOutline, patch: int) -> list[tuple[Stretch, int]]:
     """A patch's stretches counterclockwise in (u, v), each with the vertex where it ends."""
     ring: list[tuple[Stretch, int]] = []
     for number in range(4):
@@ -88,7 +88,7 @@ def _ring(shape: Outline, patch: int) -> list[tuple[Stretch, int]]:
 
 
 def outward_senses(
-    patches: Sequence[Patch],
+    patches: Sequence[SewnPatch],
     pairs: Pairs,
     senses: Sequence[int],
     shells: Sequence[Sequence[int]],
@@ -112,7 +112,7 @@ def outward_senses(
 
 
 def _turn_shell(
-    patches: Sequence[Patch],
+    patches: Sequence[SewnPatch],
     shell: Sequence[int],
     neighbours: Sequence[Sequence[tuple[int, int]]],
     sign: list[int],
@@ -144,7 +144,7 @@ def _turn_shell(
             sign[p] = -sign[p]
 
 
-def _volume(patches: Sequence[Patch], sign: Sequence[int]) -> tuple[float, float]:
+def _volume(patches: Sequence[SewnPatch], sign: Sequence[int]) -> tuple[float, float]:
     """(signed volume, area), by Gauss quadrature."""
     nodes, weights = np.polynomial.legendre.leggauss(VOLUME_POINTS)
     origin = _middle(patches[0].surface)

@@ -32,7 +32,7 @@ SPAN_PROBES = np.array([0.12, 0.38, 0.61, 0.9])
 
 
 @dataclass(frozen=True, eq=False)
-class Side:
+class PatchSide:
     """The isoline of a patch at `level`, its free parameter from first to last, or a part of it."""
 
     surface: Surface
@@ -43,17 +43,17 @@ class Side:
     last: float
 
     @staticmethod
-    def of(surface: Surface, patch: str, name: str) -> Side:
+    def of(surface: Surface, patch: str, name: str) -> PatchSide:
         u0, u1, v0, v1 = surface.domain
         level = {"u0": u0, "u1": u1, "v0": v0, "v1": v1}[name]
         first, last = (u0, u1) if name[0] == "v" else (v0, v1)
-        return Side(surface, patch, name, level, first, last)
+        return PatchSide(surface, patch, name, level, first, last)
 
     @property
     def label(self) -> str:
         return f"{self.patch} side {self.name}"
 
-    def part(self, first: float, last: float) -> Side:
+    def part(self, first: float, last: float) -> PatchSide:
         return replace(self, first=first, last=last)
 
     def parameters(self, t: float) -> tuple[float, float]:
@@ -177,7 +177,7 @@ def in_spans(breaks: Array) -> Array:
     return spans.ravel()
 
 
-def gap(one: Side, other: Side) -> float:
+def gap(one: PatchSide, other: PatchSide) -> float:
     """The greatest distance from points inside one side to the other side, in both directions."""
     forth = max(other.nearest(x)[1] for x in one.probes)
     return max(forth, max(one.nearest(x)[1] for x in other.probes))

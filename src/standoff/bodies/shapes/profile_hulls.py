@@ -34,7 +34,7 @@ TANGENT_REACH = 3.0
 
 
 @dataclass(frozen=True)
-class Arc:
+class ProfileArc:
     """The curve from parameter `low` (the lower end) to `high`; low > high if it runs downwards."""
 
     low: float
@@ -49,11 +49,11 @@ class Chain:
     """
 
     rings: Array
-    pieces: list[Arc | None]
+    pieces: list[ProfileArc | None]
 
 
 @dataclass
-class _Run:
+class _HullRun:
     """Consecutive samples on the hull, from the lower to the upper end."""
 
     first: float
@@ -87,7 +87,7 @@ def _flat(curve: Curve, t: float) -> Array:
     return curve.point(float(t))[[0, 2]]
 
 
-def _runs(curve: Curve, t: Array, points: Array) -> list[_Run]:
+def _runs(curve: Curve, t: Array, points: Array) -> list[_HullRun]:
     """Runs of samples on the hull's right side, from the lowest up."""
     mirrored = points * np.array([-1.0, 1.0])
     try:
@@ -103,9 +103,9 @@ def _runs(curve: Curve, t: Array, points: Array) -> list[_Run]:
     start = int(np.lexsort((-points[right, 0], heights))[0])
     chain = list(dict.fromkeys(right[start:] + right[:start]))
     step = float(t[1] - t[0])
-    runs: list[_Run] = []
+    runs: list[_HullRun] = []
     previous, sense = chain[0], 0
-    runs.append(_Run(t[previous], t[previous]))
+    runs.append(_HullRun(t[previous], t[previous]))
     for k in chain[1:]:
         jump = k - previous
         if curve.closed and abs(jump) > n // 2:
@@ -116,13 +116,13 @@ def _runs(curve: Curve, t: Array, points: Array) -> list[_Run]:
             runs[-1].last = float(t[k]) + turns * n * step
             sense = jump
         else:
-            runs.append(_Run(t[k], t[k]))
+            runs.append(_HullRun(t[k], t[k]))
             sense = 0
         previous = k
     return runs
 
 
-def _touch_axis(curve: Curve, runs: list[_Run], step: float) -> None:
+def _touch_axis(curve: Curve, runs: list[_HullRun], step: float) -> None:
     """Move the chain's ends to where the curve is lowest and highest."""
 
     def rise(t: float) -> float:
@@ -191,18 +191,18 @@ def _touching(curve: Curve, a: float, b: float, step: float) -> tuple[float, flo
     return a, b
 
 
-def _joined(curve: Curve, runs: list[_Run], step: float) -> Chain:
+def _joined(curve: Curve, runs: list[_HullRun], step: float) -> Chain:
     """Rings and pieces; a run whose ends met is a single ring."""
     size = float(np.abs([_flat(curve, s) for r in runs for s in (r.first, r.last)]).max())
     rings: list[Array] = []
-    pieces: list[Arc | None] = []
+    pieces: list[ProfileArc | None] = []
     for k, run in enumerate(runs):
         if k:
             pieces.append(None)
         low = _flat(curve, run.first)
         rings.append(low)
         if abs(run.last - run.first) > SHORTEST_ARC * step:
-            pieces.append(Arc(run.first, run.last))
+            pieces.append(ProfileArc(run.first, run.last))
             rings.append(_flat(curve, run.last))
     found = np.array(rings)
     found[found[:, 0] <= ON_AXIS * size, 0] = 0.0

@@ -6,7 +6,7 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.bodies.shapes.isolines import along_u
-from standoff.bodies.shapes.profile_hulls import Arc, Chain, hull_chain
+from standoff.bodies.shapes.profile_hulls import Chain, ProfileArc, hull_chain
 from standoff.bodies.tolerances import SAME_RADIUS
 from standoff.bodies.topology import Apex, Edge, Face
 from standoff.checks.numbers import magnitude_or_zero
@@ -76,7 +76,7 @@ def _piece(whole: Revolution, chain: Chain, ring: list[int], k: int) -> Face:
         side = Cylinder(np.diag([r, r, 1.0]), np.zeros(3))
         return Face((side,), ((ring[k], 1), (ring[k + 1], -1)))
     slant = Revolution(Line([low[0], 0.0, low[1]], [high[0], 0.0, high[1]]))
-    return _band(slant, Arc(0.0, 1.0), low, high, ring, k)
+    return _band(slant, ProfileArc(0.0, 1.0), low, high, ring, k)
 
 
 def _part(whole: Revolution, v0: float, v1: float) -> Revolution:
@@ -89,7 +89,7 @@ def _part(whole: Revolution, v0: float, v1: float) -> Revolution:
 
 
 def _band(
-    surface: Revolution, piece: Arc, low: Array, high: Array, ring: list[int], k: int
+    surface: Revolution, piece: ProfileArc, low: Array, high: Array, ring: list[int], k: int
 ) -> Face:
     loop, apexes, pcurves = [], [], []
     ends = (piece.low, piece.high)

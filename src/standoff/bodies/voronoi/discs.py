@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from standoff.bodies.voronoi.outline import Arc, Foot, Outline, Place
+from standoff.bodies.voronoi.outline import Arc, ArcOutline, BoundaryFoot, Place
 from standoff.bodies.voronoi.tolerances import (
     GRADES,
     LEAST_HEIGHT,
@@ -44,7 +44,7 @@ class Junction(NamedTuple):
 
 
 def greatest_disc(
-    outline: Outline, foot: Foot, start: Place, stop: Place, graded: bool = True
+    outline: ArcOutline, foot: BoundaryFoot, start: Place, stop: Place, graded: bool = True
 ) -> Touch:
     """The largest disc inside that touches the boundary at a foot, and where it touches the part of
     the boundary from start to stop, which does not contain the foot. `graded`: the ends of that
@@ -70,7 +70,7 @@ def greatest_disc(
 
 
 def _least_radius(
-    foot: Foot, arc: Arc, us: Array, samples: tuple[Array, Array, Array], least: float
+    foot: BoundaryFoot, arc: Arc, us: Array, samples: tuple[Array, Array, Array], least: float
 ) -> tuple[float, float]:
     """(u, radius) of the least disc over samples of an arc, refined as `nearest_on_arc` does."""
     best, at = np.inf, float(us[0])
@@ -111,7 +111,7 @@ def _root(function: Callable[[float], float], us: Array, i: int) -> float:
     return float(scipy.optimize.brentq(function, a, b, xtol=EPS, rtol=4.0 * EPS))
 
 
-def _radii(foot: Foot, y: Array, yu: Array, least: float) -> tuple[Array, Array]:
+def _radii(foot: BoundaryFoot, y: Array, yu: Array, least: float) -> tuple[Array, Array]:
     """Radii of discs through boundary points y, and numbers with the sign of their derivatives."""
     d = foot.x - y
     height, square = d @ foot.n, np.einsum("ij,ij->i", d, d)
@@ -121,19 +121,19 @@ def _radii(foot: Foot, y: Array, yu: Array, least: float) -> tuple[Array, Array]
     return radii, slopes
 
 
-def _radius(foot: Foot, arc: Arc, u: float) -> float:
+def _radius(foot: BoundaryFoot, arc: Arc, u: float) -> float:
     d = foot.x - arc.jet(u)[0]
     height = float(d @ foot.n)
     return float(d @ d) / (2.0 * height) if height > 0.0 else np.inf
 
 
-def _slope(foot: Foot, arc: Arc, u: float) -> float:
+def _slope(foot: BoundaryFoot, arc: Arc, u: float) -> float:
     y, yu, _ = arc.jet(u)
     d = foot.x - y
     return float((d @ d) * (yu @ foot.n) - 2.0 * (d @ yu) * (d @ foot.n))
 
 
-def junction(outline: Outline, places: tuple[Place, Place, Place]) -> Junction | None:
+def junction(outline: ArcOutline, places: tuple[Place, Place, Place]) -> Junction | None:
     """The disc that touches the boundary near three places, by Newton's method to roundoff.
 
     The unknowns are centre c, radius r and the three feet: c + r n_i - x_i = 0. None if it does not
@@ -171,7 +171,7 @@ def junction(outline: Outline, places: tuple[Place, Place, Place]) -> Junction |
     return None
 
 
-def _moved(outline: Outline, place: Place, du: float) -> Place:
+def _moved(outline: ArcOutline, place: Place, du: float) -> Place:
     """A place moved by du, across a smooth joint if it meets one; it stops at a corner."""
     n, u = place
     arc = outline.arc(n)
@@ -227,7 +227,7 @@ def _rise(arc: Arc, point: Array, u: float) -> float:
     return float((y - point) @ yu)
 
 
-def edge_distances(outline: Outline, point: Array) -> dict[int, tuple[float, Place]]:
+def edge_distances(outline: ArcOutline, point: Array) -> dict[int, tuple[float, Place]]:
     """The nearest place of every edge to a point (2,) and its distance, length.
 
     For edges that are certainly farther away than the nearest one, the nearest sample is used.

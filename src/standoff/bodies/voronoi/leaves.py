@@ -14,13 +14,13 @@ import numpy as np
 import scipy
 
 from standoff.bodies.voronoi.discs import edge_distances
-from standoff.bodies.voronoi.outline import Outline, Place
+from standoff.bodies.voronoi.outline import ArcOutline, Place
 from standoff.bodies.voronoi.tolerances import AT_END, FLAT_CURVATURE, SAME_DEPTH
 from standoff.kernels.tolerances import EPS
 from standoff.typing import Array
 
 
-class Leaf(NamedTuple):
+class AxisEnd(NamedTuple):
     """An end of the medial axis.
 
     Attributes
@@ -40,15 +40,15 @@ class Leaf(NamedTuple):
     point: Array
     depth: float
 
-    def shifted(self, turns: int) -> Leaf:
+    def shifted(self, turns: int) -> AxisEnd:
         lo, hi = (self.lo[0] + turns, self.lo[1]), (self.hi[0] + turns, self.hi[1])
         return self._replace(lo=lo, hi=hi)
 
 
-def leaves_of(outline: Outline) -> list[Leaf]:
+def leaves_of(outline: ArcOutline) -> list[AxisEnd]:
     """All leaves, in the order of the boundary; none on a circle."""
     found = [
-        Leaf("corner", (n - 1, outline.arc(n - 1).hi), (n, arc.lo), arc.jet(arc.lo)[0], 0.0)
+        AxisEnd("corner", (n - 1, outline.arc(n - 1).hi), (n, arc.lo), arc.jet(arc.lo)[0], 0.0)
         for n, arc in enumerate(outline.arcs)
         if outline.corner(n)
     ]
@@ -59,7 +59,7 @@ def leaves_of(outline: Outline) -> list[Leaf]:
     return sorted(found, key=lambda leaf: leaf.hi)
 
 
-def _crests(outline: Outline) -> list[tuple[Place, Place]]:
+def _crests(outline: ArcOutline) -> list[tuple[Place, Place]]:
     """Parts on which the sampled curvature is constant and higher than on both sides."""
     count = len(outline.arcs)
     first = next((n for n in range(count) if outline.corner(n)), 0)
@@ -73,7 +73,7 @@ def _crests(outline: Outline) -> list[tuple[Place, Place]]:
     return found + (_crests_of(outline, chain, closed=True) if chain else [])
 
 
-def _crests_of(outline: Outline, chain: list[int], closed: bool) -> list[tuple[Place, Place]]:
+def _crests_of(outline: ArcOutline, chain: list[int], closed: bool) -> list[tuple[Place, Place]]:
     """Crests of a smooth chain of arcs; one that reaches a corner belongs to the corner."""
     places: list[Place] = []
     for n in chain:
@@ -102,7 +102,7 @@ def _crests_of(outline: Outline, chain: list[int], closed: bool) -> list[tuple[P
     return crests
 
 
-def _bracket(places: list[Place], a: int, b: int, outline: Outline) -> tuple[Place, Place]:
+def _bracket(places: list[Place], a: int, b: int, outline: ArcOutline) -> tuple[Place, Place]:
     """The whole crest if it is a circular arc, else the single highest place."""
     first, last = places[a], places[b - 1]
     us = {u for n, u in places[a:b] if n == first[0]}
@@ -129,7 +129,7 @@ def _bracket(places: list[Place], a: int, b: int, outline: Outline) -> tuple[Pla
     return (n, u), (n, u)
 
 
-def _focal(outline: Outline, lo: Place, hi: Place) -> Leaf | None:
+def _focal(outline: ArcOutline, lo: Place, hi: Place) -> AxisEnd | None:
     """The leaf of a crest, if its osculating disc lies inside the body."""
     foot = max((outline.foot(p) for p in (lo, hi)), key=lambda f: f.curvature)
     radius = 1.0 / foot.curvature
@@ -141,4 +141,4 @@ def _focal(outline: Outline, lo: Place, hi: Place) -> Leaf | None:
         return None
     count = len(outline.arcs)
     turns = hi[0] // count * count
-    return Leaf("focal", (lo[0] - turns, lo[1]), (hi[0] - turns, hi[1]), centre, radius)
+    return AxisEnd("focal", (lo[0] - turns, lo[1]), (hi[0] - turns, hi[1]), centre, radius)

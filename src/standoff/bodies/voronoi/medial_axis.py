@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from standoff.bodies.voronoi.discs import Junction, Touch, greatest_disc, junction
-from standoff.bodies.voronoi.leaves import Leaf, leaves_of
-from standoff.bodies.voronoi.outline import Outline, Place
+from standoff.bodies.voronoi.leaves import AxisEnd, leaves_of
+from standoff.bodies.voronoi.outline import ArcOutline, Place
 from standoff.bodies.voronoi.tolerances import (
     BRACKET_SLACK,
     HALVINGS,
@@ -41,11 +41,11 @@ class Node:
     kind: str
     point: Array
     depth: float
-    leaf: Leaf | None = None
+    leaf: AxisEnd | None = None
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
+class AxisBranch:
     """A branch between two nodes: the two edges that it separates, and its feet, centres (n, 2) and
     radii (n,) in order."""
 
@@ -57,17 +57,17 @@ class Trace:
 
 
 @dataclass(frozen=True)
-class Gap:
+class BoundaryGap:
     """The part of the boundary between two feet of a node's disc, and its leaves."""
 
     node: Node
     start: Place
     stop: Place
-    leaves: tuple[Leaf, ...]
+    leaves: tuple[AxisEnd, ...]
 
 
 @dataclass(frozen=True)
-class Way:
+class BoundaryWay:
     """A path along the boundary with a single parameter w: stretch k for w from k to k + 1."""
 
     stretches: tuple[tuple[int, float, float], ...]
@@ -89,7 +89,7 @@ class Way:
         return self.length
 
 
-def trace_axis(outline: Outline, tolerance: float) -> tuple[list[Trace], list[Node]]:
+def trace_axis(outline: ArcOutline, tolerance: float) -> tuple[list[AxisBranch], list[Node]]:
     """All branches and nodes; for a disc, no branch and one node.
 
     Raises VoronoiError: a junction was not found.
@@ -101,8 +101,8 @@ def trace_axis(outline: Outline, tolerance: float) -> tuple[list[Trace], list[No
     root = leaves[0]
     rest = tuple(leaf if leaf.lo >= root.hi else leaf.shifted(count) for leaf in leaves[1:])
     nodes = [Node(root.kind, root.point, root.depth, root)]
-    traces: list[Trace] = []
-    gaps = [Gap(nodes[0], root.hi, root.shifted(count).lo, rest)]
+    traces: list[AxisBranch] = []
+    gaps = [BoundaryGap(nodes[0], root.hi, root.shifted(count).lo, rest)]
     while gaps:
         gap = gaps.pop()
         if not gap.leaves:
@@ -125,12 +125,12 @@ def trace_axis(outline: Outline, tolerance: float) -> tuple[list[Trace], list[No
         if len(gap.leaves) > 1:
             a, k, b = found.places
             split = _leaves_before(gap.leaves, k)
-            gaps.append(Gap(end, a, k, gap.leaves[:split]))
-            gaps.append(Gap(end, k, b, gap.leaves[split:]))
+            gaps.append(BoundaryGap(end, a, k, gap.leaves[:split]))
+            gaps.append(BoundaryGap(end, k, b, gap.leaves[split:]))
     return traces, nodes
 
 
-def _middle_of_disc(outline: Outline) -> Node:
+def _middle_of_disc(outline: ArcOutline) -> Node:
     foot = outline.foot((0, outline.arc(0).lo))
     radius = 1.0 / foot.curvature if foot.curvature > 0.0 else np.inf
     point = foot.x - radius * foot.n
@@ -142,18 +142,18 @@ def _middle_of_disc(outline: Outline) -> Node:
     return Node("focal", point, radius)
 
 
-def _leaves_before(leaves: Sequence[Leaf], place: Place) -> int:
+def _leaves_before(leaves: Sequence[AxisEnd], place: Place) -> int:
     return bisect_right([leaf.hi for leaf in leaves], place)
 
 
-def _find_junction(outline: Outline, gap: Gap) -> Junction:
+def _find_junction(outline: ArcOutline, gap: BoundaryGap) -> Junction:
     """The first disc in a gap with several leaves that touches the boundary between them.
 
     The foot at the gap's start is found by bisection: before the junction its disc touches beyond
     all leaves, after it between them.
     """
     leaves = gap.leaves
-    way = Way(tuple(outline.stretches(gap.start, leaves[0].lo)))
+    way = BoundaryWay(tuple(outline.stretches(gap.start, leaves[0].lo)))
     low, high = 0.0, way.length
     before, after = Touch(gap.stop, np.inf), None
     for _ in range(HALVINGS):
@@ -182,7 +182,7 @@ def _find_junction(outline: Outline, gap: Gap) -> Junction:
     )
 
 
-def _in_order(gap: Gap, found: Junction) -> bool:
+def _in_order(gap: BoundaryGap, found: Junction) -> bool:
     a, k, b = found.places
     split = _leaves_before(gap.leaves, k)
     return (
@@ -204,10 +204,10 @@ class Point(NamedTuple):
 
 
 def _traced(
-    outline: Outline, gap: Gap, end: Node, ends: tuple[Place, Place], tolerance: float
-) -> list[Trace]:
+    outline: ArcOutline, gap: BoundaryGap, end: Node, ends: tuple[Place, Place], tolerance: float
+) -> list[AxisBranch]:
     """A branch as polylines, split where a foot passes from one edge to another."""
-    way = Way(tuple(outline.stretches(gap.start, ends[0])))
+    way = BoundaryWay(tuple(outline.stretches(gap.start, ends[0])))
     if not way.stretches:
         raise VoronoiError(f"No foot can move along the branch {gap.node.point} to {end.point}.")
     branch = _Branch(outline, way, (ends[1], gap.stop), tolerance)
@@ -226,7 +226,7 @@ def _traced(
         points = [stops[i], *branch.between(stops[i], stops[i + 1]), stops[i + 1]]
         middle = points[len(points) // 2]
         traces.append(
-            Trace(
+            AxisBranch(
                 (nodes[i], nodes[i + 1]),
                 (outline.arc(way.place(middle.w)[0]).edge, outline.arc(middle.touch[0]).edge),
                 [(way.place(p.w), p.touch) for p in points],
@@ -241,8 +241,8 @@ def _traced(
 class _Branch:
     """One foot moves along `way`, the other one backwards within `span`."""
 
-    outline: Outline
-    way: Way
+    outline: ArcOutline
+    way: BoundaryWay
     span: tuple[Place, Place]
     tolerance: float
 

@@ -28,7 +28,7 @@ Place: TypeAlias = tuple[int, float]
 PIECES_OF_CLOSED = 4
 
 
-class Foot(NamedTuple):
+class BoundaryFoot(NamedTuple):
     """A boundary point: x, outward normal n, unit tangent counterclockwise, all (2,); curvature
     and speed |dx/du|."""
 
@@ -59,13 +59,13 @@ class Arc(KeepsReadOnly):
         x, xt, xtt = self.curve.jet(t)
         return x[:2], self.sign * xt[:2], xtt[:2]
 
-    def foot(self, u: float) -> Foot:
+    def foot(self, u: float) -> BoundaryFoot:
         x, xu, xuu = self.jet(u)
         speed = float(np.hypot(xu[0], xu[1]))
         tangent = xu / speed
         curvature = (tangent[0] * xuu[1] - tangent[1] * xuu[0]) / speed**2
         normal = np.array([tangent[1], -tangent[0]])
-        return Foot(x, normal, tangent, float(curvature), speed)
+        return BoundaryFoot(x, normal, tangent, float(curvature), speed)
 
     @cached_property
     def us(self) -> Array:
@@ -89,7 +89,7 @@ class Arc(KeepsReadOnly):
 
 
 @dataclass(frozen=True)
-class Outline(KeepsReadOnly):
+class ArcOutline(KeepsReadOnly):
     """arcs, counterclockwise; joints[n], the vertex before arc n (-1 for none); turns[n] of the
     normal there, radians; size of the body, length."""
 
@@ -101,7 +101,7 @@ class Outline(KeepsReadOnly):
     def arc(self, n: int) -> Arc:
         return self.arcs[n % len(self.arcs)]
 
-    def foot(self, place: Place) -> Foot:
+    def foot(self, place: Place) -> BoundaryFoot:
         return self.arc(place[0]).foot(place[1])
 
     def corner(self, n: int) -> bool:
@@ -119,7 +119,7 @@ class Outline(KeepsReadOnly):
         return found
 
 
-def outline_of(body: Body) -> Outline:
+def outline_of(body: Body) -> ArcOutline:
     """The outline of a planar body's core.
 
     Raises BodyError: the body is not planar.
@@ -136,7 +136,7 @@ def outline_of(body: Body) -> Outline:
         arcs += runs[j]
         vertices += [vertex] + [-1] * (len(runs[j]) - 1)
     turns = [_turn(arcs[n - 1], arc) for n, arc in enumerate(arcs)]
-    return Outline(tuple(arcs), tuple(vertices), tuple(turns), float(body.reals[L.SIZE]))
+    return ArcOutline(tuple(arcs), tuple(vertices), tuple(turns), float(body.reals[L.SIZE]))
 
 
 def _arcs_of(body: Body, j: int) -> list[Arc]:

@@ -9,8 +9,8 @@ import numpy as np
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.voronoi.discs import edge_distances, greatest_disc
-from standoff.bodies.voronoi.medial_axis import Node, Trace, trace_axis
-from standoff.bodies.voronoi.outline import Outline, Place, outline_of
+from standoff.bodies.voronoi.medial_axis import AxisBranch, Node, trace_axis
+from standoff.bodies.voronoi.outline import ArcOutline, Place, outline_of
 from standoff.bodies.voronoi.regions import (
     BranchEnd,
     MedialBranch,
@@ -49,7 +49,7 @@ def planar_regions(body: Body, reach: float, tolerance: float | None) -> Voronoi
     return VoronoiRegions(body, reach, external, branches, cones)
 
 
-def _outside(outline: Outline) -> tuple[tuple[RegionBoundary, ...], tuple[NormalCone, ...]]:
+def _outside(outline: ArcOutline) -> tuple[tuple[RegionBoundary, ...], tuple[NormalCone, ...]]:
     """The normals at every vertex as rays, and as cones."""
     rays: list[RegionBoundary] = []
     cones: list[NormalCone] = []
@@ -72,7 +72,9 @@ def _outside(outline: Outline) -> tuple[tuple[RegionBoundary, ...], tuple[Normal
     return tuple(rays), tuple(cones)
 
 
-def _branches(outline: Outline, traces: list[Trace], nodes: list[Node]) -> tuple[MedialBranch, ...]:
+def _branches(
+    outline: ArcOutline, traces: list[AxisBranch], nodes: list[Node]
+) -> tuple[MedialBranch, ...]:
     ends = {id(node): _end(outline, node) for trace in traces for node in trace.nodes}
     if not traces:  # a disc
         centre, edges = nodes[0], sorted({arc.edge for arc in outline.arcs})
@@ -85,7 +87,7 @@ def _branches(outline: Outline, traces: list[Trace], nodes: list[Node]) -> tuple
     return tuple(_branch(outline, trace, ends) for trace in traces)
 
 
-def _branch(outline: Outline, trace: Trace, ends: dict[int, BranchEnd]) -> MedialBranch:
+def _branch(outline: ArcOutline, trace: AxisBranch, ends: dict[int, BranchEnd]) -> MedialBranch:
     first, last = trace.nodes
     parameters = np.array(
         [
@@ -102,7 +104,7 @@ def _branch(outline: Outline, trace: Trace, ends: dict[int, BranchEnd]) -> Media
     )
 
 
-def _parameter(outline: Outline, place: Place, edge: int) -> float:
+def _parameter(outline: ArcOutline, place: Place, edge: int) -> float:
     """The curve's own parameter at a place of an edge, or at its end next to the place."""
     n, u = place
     arc = outline.arc(n)
@@ -113,7 +115,7 @@ def _parameter(outline: Outline, place: Place, edge: int) -> float:
     return arc.sign * u
 
 
-def _end(outline: Outline, node: Node) -> BranchEnd:
+def _end(outline: ArcOutline, node: Node) -> BranchEnd:
     if node.kind == "corner" and node.leaf is not None:
         vertex = outline.joints[node.leaf.hi[0] % len(outline.arcs)]
         return BranchEnd("corner", (Feature("vertex", vertex),))
@@ -148,14 +150,14 @@ def _in_space(points: Array) -> Array:
 DOUBT = 8.0
 
 
-def check_axis(outline: Outline, branches: Sequence[MedialBranch], tolerance: float) -> None:
+def check_axis(outline: ArcOutline, branches: Sequence[MedialBranch], tolerance: float) -> None:
     """Raise VoronoiError if the edges of a branch are not nearest, or if a branch is missing."""
     for branch in branches:
         _check_nearest(outline, branch)
     _check_complete(outline, branches, DOUBT * tolerance)
 
 
-def _check_nearest(outline: Outline, branch: MedialBranch) -> None:
+def _check_nearest(outline: ArcOutline, branch: MedialBranch) -> None:
     allowed = SAME_DEPTH * outline.size
     for point, depth in zip(branch.points, branch.depth, strict=True):
         found = edge_distances(outline, point[:2])
@@ -170,7 +172,7 @@ def _check_nearest(outline: Outline, branch: MedialBranch) -> None:
             )
 
 
-def _check_complete(outline: Outline, branches: Sequence[MedialBranch], allowed: float) -> None:
+def _check_complete(outline: ArcOutline, branches: Sequence[MedialBranch], allowed: float) -> None:
     """Check that the largest disc at every boundary point has its centre on the axis."""
     starts = np.vstack([b.points[: max(len(b.points) - 1, 1), :2] for b in branches])
     stops = np.vstack([b.points[min(len(b.points) - 1, 1) :, :2] for b in branches])

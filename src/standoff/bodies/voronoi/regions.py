@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from standoff.bodies.body import Body
 from standoff.bodies.features import Feature
 from standoff.bodies.voronoi.discs import edge_distances
-from standoff.bodies.voronoi.outline import Outline, outline_of
-from standoff.bodies.voronoi.search import Boundary
+from standoff.bodies.voronoi.outline import ArcOutline, outline_of
+from standoff.bodies.voronoi.search import SampledBoundary
 from standoff.checks.arrays import finite
 from standoff.checks.real_numbers import shape_of
 from standoff.errors import StandoffError
@@ -171,13 +171,13 @@ def nearest_feature(body: Body, point: ArrayLike) -> Feature:
 
 
 @lru_cache(maxsize=KEPT)
-def _outline(body: Body) -> Outline:
+def _outline(body: Body) -> ArcOutline:
     return outline_of(body)
 
 
 @lru_cache(maxsize=KEPT)
-def _boundary(body: Body) -> Boundary:
-    return Boundary(body)
+def _boundary(body: Body) -> SampledBoundary:
+    return SampledBoundary(body)
 
 
 def _nearest_in_plane(body: Body, x: Array) -> Feature:

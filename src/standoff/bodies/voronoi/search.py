@@ -52,7 +52,7 @@ class _Samples(NamedTuple):
         return [self.parameters[k].copy() for k in (*rim, *within)]
 
 
-class Boundary(KeepsReadOnly):
+class SampledBoundary(KeepsReadOnly):
     """A body's boundary, sampled once; `nearest` refines from the samples."""
 
     def __init__(self, body: Body) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from standoff.geometry.formulas.programs import Writer, jet_expressions
+from standoff.geometry.formulas.programs import ProgramText, jet_expressions
 from standoff.typing import Array
 
 # Names that the compiled text may use.
@@ -69,7 +69,7 @@ def _compile(key: tuple[str, ...], expressions: tuple[Any, ...], variables: tupl
     from numba import cfunc, types
 
     jet = jet_expressions(expressions, variables)
-    shared, outputs = Writer().body(jet)
+    shared, outputs = ProgramText().body(jet)
     lines = [f"def jet({', '.join(variables)}, out):", *shared]
     lines += [f"out[{k}] = {text}" for k, text in enumerate(outputs)]
     namespace: dict[str, Any] = dict(MATH)

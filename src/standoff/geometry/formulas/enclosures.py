@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.boxes import Boxes, grid
-from standoff.geometry.formulas.programs import ENCLOSED, Writer
+from standoff.geometry.formulas.programs import ENCLOSED, ProgramText
 from standoff.geometry.interval_vectors import mapped
 from standoff.geometry.intervals import FUNCTIONS, Interval, interval
 from standoff.geometry.tolerances import SMALLEST_BOX
@@ -27,7 +27,7 @@ class Enclosure:
     """k expressions as a program over intervals."""
 
     def __init__(self, expressions: Sequence[Any], variables: tuple[str, ...]) -> None:
-        lines, outputs = Writer(ENCLOSED).body(expressions)
+        lines, outputs = ProgramText(ENCLOSED).body(expressions)
         text = [f"def bounds({', '.join(variables)}):", *lines, f"return [{', '.join(outputs)}]"]
         namespace: dict[str, Any] = dict(FUNCTIONS)
         exec("\n    ".join(text), namespace)

@@ -59,7 +59,7 @@ def bits_of(e: Any) -> float:
     return max(sum(below), sum(parts) - sum(below))
 
 
-class Writer:
+class ProgramText:
     """Python text of expressions with +, -, *, /, ** (integer), power() and named functions.
 
     near : NEAREST, or ENCLOSED for intervals, which contain even numbers beyond float64

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from standoff.geometry.formulas.compiled import Formula
-from standoff.geometry.formulas.programs import ENCLOSED, Writer
+from standoff.geometry.formulas.programs import ENCLOSED, ProgramText
 from standoff.geometry.intervals import Interval
 from standoff.geometry.series import SERIES_FUNCTIONS, Series
 
@@ -18,7 +18,7 @@ class SeriesProgram:
     """Expressions in u and v, or in t, as a program over series."""
 
     def __init__(self, expressions: Sequence[Any], variables: tuple[str, ...]) -> None:
-        lines, outputs = Writer(ENCLOSED).body(expressions)
+        lines, outputs = ProgramText(ENCLOSED).body(expressions)
         text = [f"def series({', '.join(variables)}):", *lines, f"return [{', '.join(outputs)}]"]
         namespace: dict[str, Any] = dict(SERIES_FUNCTIONS)
         exec("\n    ".join(text), namespace)

@@ -27,7 +27,7 @@ with of_extra("matplotlib", "plot"):
     from matplotlib.path import Path
 
 
-class Flat(Protocol):
+class PlanarDrawing(Protocol):
     """What is drawn of a planar solid."""
 
     @property
@@ -59,7 +59,7 @@ VERTEX_LOOKS: dict[str, dict[str, Any]] = {
 """By kind."""
 
 
-def solid_figure(solid: Flat, name: str, unit: str) -> Figure:
+def solid_figure(solid: PlanarDrawing, name: str, unit: str) -> Figure:
     """A planar solid with its vertices by kind."""
     figure = Figure(figsize=(7.5, 7.0), dpi=150)
     FigureCanvasAgg(figure)
@@ -81,7 +81,7 @@ def solid_figure(solid: Flat, name: str, unit: str) -> Figure:
 
 
 def pair_figure(
-    solids: tuple[Flat, Flat],
+    solids: tuple[PlanarDrawing, PlanarDrawing],
     names: tuple[str, str],
     answer: SolidProximity,
     unit: str,
@@ -113,7 +113,7 @@ def pair_figure(
 
 def _draw_solid(
     axes: Axes,
-    solid: Flat,
+    solid: PlanarDrawing,
     pose: Array,
     colours: tuple[str, str],
     active: Feature | None,
@@ -145,7 +145,7 @@ def _draw_solid(
     return outline
 
 
-def _vertices(solid: Flat) -> Array:
+def _vertices(solid: PlanarDrawing) -> Array:
     """(n, 2): vertex k is where edge k begins."""
     return np.array(
         [
@@ -156,7 +156,7 @@ def _vertices(solid: Flat) -> Array:
     )
 
 
-def _vertices_legend(*solids: Flat) -> list[Artist]:
+def _vertices_legend(*solids: PlanarDrawing) -> list[Artist]:
     kinds = {kind for s in solids if s.n_edges <= MOST_MARKED for kind in s.kinds}
     return [
         Line2D([], [], linestyle="", label=f"{kind} vertex", **look)

@@ -8,12 +8,12 @@ import numpy as np
 
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.answer import Continuum
-from standoff.solids.planar.pair import Queried
+from standoff.solids.planar.pair import PlanarPair
 from standoff.solids.planar.tolerances import LONG_SET, ONE_PAIR
 from standoff.typing import Array
 
 
-def distinct(pair: Queried, rows: Array) -> Array:
+def distinct(pair: PlanarPair, rows: Array) -> Array:
     """The nearest of each set of rows that are one, nearest first."""
     sets: list[list[Array]] = []
     for row in rows:
@@ -35,7 +35,7 @@ def _best(rows: list[Array]) -> Array:
     return best
 
 
-def _is_one(pair: Queried, row: Array, other: Array) -> bool:
+def _is_one(pair: PlanarPair, row: Array, other: Array) -> bool:
     """Are two pairs of points the same, or is the pair half way between them as near?
 
     Where boundaries nearly follow each other, pairs within the tolerance reach far.
@@ -54,7 +54,7 @@ def _is_one(pair: Queried, row: Array, other: Array) -> bool:
     return bool(gap <= max(row[0], other[0]) + pair.tolerance)
 
 
-def continuum_of(pair: Queried, near: Array, least: float) -> Continuum | None:
+def continuum_of(pair: PlanarPair, near: Array, least: float) -> Continuum | None:
     """The longest set of nearest pairs, of lines and arcs in closed form."""
     pieces: list[tuple[str, Array, Array]] = []
     for row in near:
@@ -74,7 +74,7 @@ def continuum_of(pair: Queried, near: Array, least: float) -> Continuum | None:
     return Continuum(shape, ends)
 
 
-def _piece(pair: Queried, row: Array, least: float) -> tuple[str, Array, Array] | None:
+def _piece(pair: PlanarPair, row: Array, least: float) -> tuple[str, Array, Array] | None:
     """(kind, first pair, last pair) of the nearest pairs of two leaves: each (ax, ay, bx, by)."""
     a, b = pair.a.outline, pair.b.outline
     leaf_a, leaf_b = int(row[10]), int(row[11])
@@ -87,7 +87,7 @@ def _piece(pair: Queried, row: Array, least: float) -> tuple[str, Array, Array] 
     return None
 
 
-def _moved(pair: Queried, side: int, points: Any) -> Array:
+def _moved(pair: PlanarPair, side: int, points: Any) -> Array:
     """Points (n, 2) of a solid's frame in A's."""
     at = np.asarray(points, dtype=np.float64)
     if side == 0:
@@ -97,7 +97,7 @@ def _moved(pair: Queried, side: int, points: Any) -> Array:
     return moved
 
 
-def _ends(pair: Queried, side: int, leaf: int) -> Array:
+def _ends(pair: PlanarPair, side: int, leaf: int) -> Array:
     outline = (pair.a, pair.b)[side].outline
     at = P.N_LEAF * leaf
     points = outline.leaves[at + P.START : at + P.END + 2].reshape(2, 2)
@@ -134,7 +134,7 @@ def _of_lines(one: Array, two: Array, limit: float) -> tuple[str, Array, Array] 
     return "line", ends[0], ends[1]
 
 
-def _arc(pair: Queried, side: int, leaf: int) -> tuple[Array, float, float, float]:
+def _arc(pair: PlanarPair, side: int, leaf: int) -> tuple[Array, float, float, float]:
     """(centre, radius, first angle, turn counterclockwise) of an arc in A's frame."""
     outline = (pair.a, pair.b)[side].outline
     at = P.N_LEAF * leaf
@@ -148,7 +148,7 @@ def _arc(pair: Queried, side: int, leaf: int) -> tuple[Array, float, float, floa
 
 
 def _of_arcs(
-    pair: Queried, leaf_a: int, leaf_b: int, limit: float
+    pair: PlanarPair, leaf_a: int, leaf_b: int, limit: float
 ) -> tuple[str, Array, Array] | None:
     """Where arcs round nearly the same centre stand over each other."""
     centre_a, r_a, first_a, turn_a = _arc(pair, 0, leaf_a)

@@ -125,14 +125,16 @@ def joined(curves: tuple[Curve, ...], where: str, tolerance: float) -> Loop:
     return Loop(curves, signs, gap)
 
 
-class Packed(NamedTuple):
+class PackedLoop(NamedTuple):
     """The leaves of a loop, joined: their ends are the starts of the next."""
 
     reals: Array
     ints: NDArray[np.int64]
 
 
-def packed_loop(loop: Loop, first_curve: int, offsets: Sequence[int], first_leaf: int) -> Packed:
+def packed_loop(
+    loop: Loop, first_curve: int, offsets: Sequence[int], first_leaf: int
+) -> PackedLoop:
     """The leaves of a loop whose curves have numbers from `first_curve` on, and their data at
     `offsets`."""
     at_least = -(-FEWEST_LEAVES // len(loop.curves))
@@ -154,4 +156,4 @@ def packed_loop(loop: Loop, first_curve: int, offsets: Sequence[int], first_leaf
     numbers = np.arange(n)
     ints[:, P.BEFORE] = first_leaf + (numbers - 1) % n
     ints[:, P.AFTER] = first_leaf + (numbers + 1) % n
-    return Packed(reals, ints)
+    return PackedLoop(reals, ints)

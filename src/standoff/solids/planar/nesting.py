@@ -12,7 +12,7 @@ from standoff.kernels.solids import planar_crossings as C
 from standoff.kernels.solids import planar_layout as P
 from standoff.solids.planar.area import area_of, rough_area
 from standoff.solids.planar.loops import Loop, size_of
-from standoff.solids.planar.outline import Outline, packed_outline
+from standoff.solids.planar.outline import PlanarOutline, packed_outline
 from standoff.solids.planar.tolerances import APART_FROM_ITSELF, CLEAR_AREA
 
 # Pairs of parts that may be looked at.
@@ -38,7 +38,7 @@ def turned(loop: Loop, outer: bool) -> Loop:
     return loop if (area > 0.0) == outer else loop.reversed()
 
 
-def check_simple(outline: Outline, loops: tuple[Loop, ...]) -> None:
+def check_simple(outline: PlanarOutline, loops: tuple[Loop, ...]) -> None:
     """Raise BodyError with the place where a boundary meets itself."""
     touch = APART_FROM_ITSELF * outline.size
     found, x, y, leaf_p, leaf_q = entries.self_crossing(outline.arrays, touch, MOST_LOOKS)
@@ -125,6 +125,6 @@ def _point_of(loop: Loop) -> np.ndarray:
     return curve.point(0.5 * (curve.first + curve.last))[:2]
 
 
-def _is_in(outline: Outline, loop: Loop) -> bool:
+def _is_in(outline: PlanarOutline, loop: Loop) -> bool:
     _, inside, _ = outline.foot(_point_of(loop)[None, :].copy(), 0.0)
     return bool(inside[0])

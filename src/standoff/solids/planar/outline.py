@@ -13,7 +13,7 @@ from standoff.solids.planar.tolerances import BOUND_ROUNDED
 from standoff.typing import Array, Ints
 
 
-class Outline(NamedTuple):
+class PlanarOutline(NamedTuple):
     """Arrays of a boundary, read-only.
 
     Attributes
@@ -79,7 +79,7 @@ class Outline(NamedTuple):
         return distances, inside, feet
 
 
-def packed_outline(loops: tuple[Loop, ...]) -> Outline:
+def packed_outline(loops: tuple[Loop, ...]) -> PlanarOutline:
     """Pack loops, the solid on the left of each."""
     data: list[Array] = []
     leaves: list[Array] = []
@@ -115,7 +115,7 @@ def packed_outline(loops: tuple[Loop, ...]) -> Outline:
     )
     for array in packed:
         array.flags.writeable = False
-    return Outline(*packed)
+    return PlanarOutline(*packed)
 
 
 # The tree over the leaves of a planar boundary, of capsules.

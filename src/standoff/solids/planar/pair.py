@@ -8,16 +8,16 @@ from typing import Any, NamedTuple, Protocol
 from standoff.bodies.features import Feature
 from standoff.geometry.curves import Curve
 from standoff.solids.planar.loops import Loop
-from standoff.solids.planar.outline import Outline
+from standoff.solids.planar.outline import PlanarOutline
 from standoff.solids.planar.tolerances import BOUND_ROUNDED
 from standoff.typing import Array
 
 
-class Shape(Protocol):
+class PlanarShape(Protocol):
     """What a query needs of a planar solid."""
 
     @property
-    def outline(self) -> Outline: ...
+    def outline(self) -> PlanarOutline: ...
 
     @property
     def loops(self) -> Sequence[Loop]: ...
@@ -34,11 +34,11 @@ class Shape(Protocol):
     def feature_at(self, leaf: int, t: float) -> tuple[Feature, tuple[float, ...]]: ...
 
 
-class Queried(NamedTuple):
+class PlanarPair(NamedTuple):
     """A pair at its poses, and how its answer is to be proven."""
 
-    a: Shape
-    b: Shape
+    a: PlanarShape
+    b: PlanarShape
     poses: Array  # (24,)
     tolerance: float
     extent: float

@@ -22,10 +22,10 @@ from standoff.solids.answer import (
     SolidCounts,
     SolidProximity,
 )
-from standoff.solids.asked import DEFAULT, Asked
+from standoff.solids.asked import DEFAULT, QueryOptions
 from standoff.solids.parting import Gap, parted, shortest
 from standoff.solids.planar.continua import continuum_of, distinct
-from standoff.solids.planar.pair import Queried, Shape
+from standoff.solids.planar.pair import PlanarPair, PlanarShape
 from standoff.solids.planar.tolerances import BALL_PART, BOUND_ROUNDED, PROVEN_TO
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.inputs import check_in_plane, flat_pose
@@ -52,7 +52,11 @@ class Searched(NamedTuple):
 
 
 def planar_distance(
-    first: Shape, second: Shape, pose_a: PoseLike, pose_b: PoseLike, asked: Asked = DEFAULT
+    first: PlanarShape,
+    second: PlanarShape,
+    pose_a: PoseLike,
+    pose_b: PoseLike,
+    asked: QueryOptions = DEFAULT,
 ) -> SolidProximity:
     """See ``so.solids.distance``."""
     within, tolerance, minima, deadline, _ = asked
@@ -63,7 +67,7 @@ def planar_distance(
     size = max(first.size, second.size)
     proof = PROVEN_TO * size if tolerance is None else tolerance
     proof = max(proof, 4.0 * BOUND_ROUNDED * extent)
-    pair = Queried(first, second, np.concatenate([flat_a, flat_b]), proof, extent, deadline)
+    pair = PlanarPair(first, second, np.concatenate([flat_a, flat_b]), proof, extent, deadline)
     horizon = np.inf if within is None else within
     searched = search(pair, minima or 0.0, horizon, meeting=proof)
     if searched.ended == S.BEYOND:
@@ -76,7 +80,7 @@ def planar_distance(
     return _apart(pair, searched, ("B" if inside[0] else "A") if any(inside) else "", minima)
 
 
-def search(pair: Queried, above: float, horizon: float, meeting: float) -> Searched:
+def search(pair: PlanarPair, above: float, horizon: float, meeting: float) -> Searched:
     """The nearest pairs of the boundaries, and what is proven of their distance."""
     rows, heap = np.empty(CAPACITY * S.N_ROW), np.empty(CAPACITY, dtype=np.int64)
     found, counts = np.empty(MOST_FOUND * S.N_FOUND), np.zeros(S.N_COUNT, dtype=np.int64)
@@ -102,7 +106,7 @@ def search(pair: Queried, above: float, horizon: float, meeting: float) -> Searc
     )
 
 
-def _inside(pair: Queried) -> tuple[bool, bool]:
+def _inside(pair: PlanarPair) -> tuple[bool, bool]:
     """(is a loop of B inside A's material, is one of A inside B's), of boundaries that do not
     meet: one point of each loop decides."""
     R_a, R_b = (pair.poses[k : k + 9].reshape(3, 3)[:2, :2] for k in (0, 12))
@@ -125,7 +129,7 @@ def _counts(counts: NDArray[np.int64]) -> SolidCounts:
     return SolidCounts(jets + nodes + boxes, nodes, leaves, boxes, cuts)
 
 
-def _open(pair: Queried, searched: Searched) -> tuple[tuple[OpenPair, ...], int]:
+def _open(pair: PlanarPair, searched: Searched) -> tuple[tuple[OpenPair, ...], int]:
     """What a search left: pieces in boxes, the nearest first; and how many."""
     rows = searched.left[searched.left[:, 0] < searched.least - pair.tolerance]
     listed = tuple(
@@ -139,7 +143,7 @@ def _open(pair: Queried, searched: Searched) -> tuple[tuple[OpenPair, ...], int]
     return listed, len(rows)
 
 
-def _corners(pair: Queried, piece: Array) -> Array:
+def _corners(pair: PlanarPair, piece: Array) -> Array:
     """(4, 3) of a box around a piece, which is a chord's capsule, world axes."""
     ends, radius = piece[3:7].reshape(2, 2), float(piece[7])
     along = ends[1] - ends[0]
@@ -154,11 +158,11 @@ def _corners(pair: Queried, piece: Array) -> Array:
     return np.array([pair.world(spot) for spot in spots])
 
 
-def _pairs(pair: Queried, rows: Array) -> tuple[NearestPair, ...]:
+def _pairs(pair: PlanarPair, rows: Array) -> tuple[NearestPair, ...]:
     return tuple(_nearest(pair, row) for row in rows)
 
 
-def _nearest(pair: Queried, row: Array) -> NearestPair:
+def _nearest(pair: PlanarPair, row: Array) -> NearestPair:
     feature_a, at_a = pair.a.feature_at(int(row[10]), float(row[8]))
     feature_b, at_b = pair.b.feature_at(int(row[11]), float(row[9]))
     return NearestPair(
@@ -174,7 +178,9 @@ def _nearest(pair: Queried, row: Array) -> NearestPair:
     )
 
 
-def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None) -> SolidProximity:
+def _apart(
+    pair: PlanarPair, searched: Searched, inside: str, minima: float | None
+) -> SolidProximity:
     """Boundaries that do not meet: apart, one in a hole of the other, or one in its material."""
     near = searched.found[searched.found[:, 0] <= searched.least + pair.tolerance]
     rows = distinct(pair, searched.found if minima else near)
@@ -206,7 +212,7 @@ def _apart(pair: Queried, searched: Searched, inside: str, minima: float | None)
 
 
 def _answer(
-    pair: Queried,
+    pair: PlanarPair,
     status: Status,
     bounds: tuple[float, float],
     pairs: tuple[NearestPair, ...],
@@ -258,7 +264,7 @@ def _answer(
     )
 
 
-def _in_hole(pair: Queried, found: SolidProximity) -> Literal["A", "B", ""]:
+def _in_hole(pair: PlanarPair, found: SolidProximity) -> Literal["A", "B", ""]:
     """Which solid is in a hole of the other: the nearest point is then on that loop, as nothing is
     between."""
     if found.feature_b.index >= len(pair.b.loops[0].curves):
@@ -271,12 +277,12 @@ def _unseen() -> NearestPair:
     return NearestPair(np.nan, np.nan, empty, empty, empty, NO_FEATURE, NO_FEATURE, (), ())
 
 
-def _beyond(pair: Queried, searched: Searched) -> SolidProximity:
+def _beyond(pair: PlanarPair, searched: Searched) -> SolidProximity:
     bounds = searched.proven, np.inf
     return _answer(pair, Status.FAR, bounds, (), Smoothness.UNDEFINED, _counts(searched.counts))
 
 
-def _meeting(pair: Queried, above: float) -> SolidProximity:
+def _meeting(pair: PlanarPair, above: float) -> SolidProximity:
     """Boundaries that meet: all places, then the largest ball found inside both."""
     searched = search(pair, above, np.inf, meeting=-1.0)
     overlap = common_ball(pair, searched)
@@ -296,7 +302,7 @@ def _meeting(pair: Queried, above: float) -> SolidProximity:
     return _answer(pair, status, bounds, pairs, smooth, counts, continuum)
 
 
-def _gap(pair: Queried, by: Array) -> Gap | None:
+def _gap(pair: PlanarPair, by: Array) -> Gap | None:
     """How far the solids are apart, at least, with B moved by a world vector, and the normal there;
     None where it is not proven that they have no common point."""
     poses = pair.poses.copy()
@@ -308,7 +314,7 @@ def _gap(pair: Queried, by: Array) -> Gap | None:
     return found.proven, pair.turned(found.found[0, 6:8])
 
 
-def _way_out(pair: Queried) -> Array:
+def _way_out(pair: PlanarPair) -> Array:
     """A world vector: B, moved by it, is proven to be apart from A."""
     angles = 2.0 * np.pi * np.arange(ALL_ROUND) / ALL_ROUND
     ways, away = np.column_stack([np.cos(angles), np.sin(angles)]), pair.poses[21:23]
@@ -318,7 +324,7 @@ def _way_out(pair: Queried) -> Array:
     return shortest(np.pad(ways, ((0, 0), (0, 1))), lengths, lambda by: _gap(pair, by))
 
 
-def _deepest(pair: Queried, ball: Overlap) -> float:
+def _deepest(pair: PlanarPair, ball: Overlap) -> float:
     """No translation shorter than this parts the solids: the ball's diameter, or how deep an end of
     one's leaves is in the other."""
     depth, there = ball.depth, (pair.poses[:12], pair.poses[12:])
@@ -333,7 +339,7 @@ def _deepest(pair: Queried, ball: Overlap) -> float:
     return depth
 
 
-def common_ball(pair: Queried, searched: Searched) -> Overlap | None:
+def common_ball(pair: PlanarPair, searched: Searched) -> Overlap | None:
     """The largest ball found inside both, proven to be there."""
     R = pair.poses[:9].reshape(3, 3)[:2, :2].T @ pair.poses[12:21].reshape(3, 3)[:2, :2]
     shift = pair.poses[:9].reshape(3, 3)[:2, :2].T @ (pair.poses[21:23] - pair.poses[9:11])
@@ -364,7 +370,7 @@ def common_ball(pair: Queried, searched: Searched) -> Overlap | None:
 
 
 def _overlapping(
-    pair: Queried, searched: Searched, overlap: Overlap | None = None
+    pair: PlanarPair, searched: Searched, overlap: Overlap | None = None
 ) -> SolidProximity:
     ball = overlap or common_ball(pair, searched)
     way = _way_out(pair)

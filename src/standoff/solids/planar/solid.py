@@ -21,12 +21,12 @@ from standoff.kernels.solids.planar_tolerances import END_OF_PIECE
 from standoff.motion import PoseLike
 from standoff.read_only import KeepsReadOnly
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import Asked
+from standoff.solids.asked import QueryOptions
 from standoff.solids.planar.area import area_of
 from standoff.solids.planar.leaves import form_of
 from standoff.solids.planar.loops import Loop, read_loop
 from standoff.solids.planar.nesting import check_simple, nested, oriented, turned
-from standoff.solids.planar.outline import Outline, packed_outline
+from standoff.solids.planar.outline import PlanarOutline, packed_outline
 from standoff.solids.planar.query import planar_distance
 from standoff.solids.planar.tolerances import NO_CORNER, PROVEN_TO, SMOOTH_TURN
 from standoff.solids.plotted import Plotted, checked_answer
@@ -60,7 +60,7 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         that were removed from splines; length.
     kinds : tuple of "convex", "reflex" or "smooth"
         Of the vertices: a corner that points outward, one that points inward, or none.
-    outline : Outline
+    outline : PlanarOutline
         What the compiled loops read.
     """
 
@@ -70,7 +70,7 @@ class PlanarSolid(KeepsReadOnly, Plotted):
     area_error: float
     slack: float
     kinds: tuple[VertexKind, ...]
-    outline: Outline = field(repr=False)
+    outline: PlanarOutline = field(repr=False)
 
     @classmethod
     def from_loops(
@@ -220,7 +220,7 @@ class PlanarSolid(KeepsReadOnly, Plotted):
         SolidProximity
         """
         first, second = PlanarSolid.of(a, "a"), PlanarSolid.of(b, "b")
-        return planar_distance(first, second, pose_a, pose_b, Asked(within))
+        return planar_distance(first, second, pose_a, pose_b, QueryOptions(within))
 
     def _figure(self, unit: str) -> Figure:
         from standoff.solids.drawing.planar_picture import solid_figure

@@ -18,8 +18,8 @@ from standoff.kernels.solids import spatial_progress as C
 from standoff.kernels.solids.minima_sets import MOST_SETS, SET_REALS, SET_ROW
 from standoff.kernels.solids.overlap_depth import BALL, ENOUGH, MOST_PUSHES
 from standoff.solids.answer import Overlap
-from standoff.solids.spatial.minimum import MOST_LOCAL, Sought, evaluations_of, started
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.minimum import MOST_LOCAL, SearchOptions, evaluations_of, started
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import LEAST_LENGTH
@@ -62,7 +62,7 @@ class Region(NamedTuple):
     translation is less than which parts the solids."""
 
     row: Array
-    place: Place
+    place: NearestPlace
     depth: float
 
 
@@ -76,7 +76,7 @@ def _room(thread: int) -> tuple[Array, Array, NDArray[np.int64]]:
     )
 
 
-def signed_minima_of(pair: PlacedPair, sought: Sought) -> SignedMinima:
+def signed_minima_of(pair: PlacedPair, sought: SearchOptions) -> SignedMinima:
     """Those whose signed distance is at most `sought.above`, on either side of 0."""
     best, _ = started(sought, pair.size, float(np.linalg.norm(pair.relative[9:])))
     best[C.MOST_MINIMA] = MOST_LOCAL
@@ -98,13 +98,13 @@ def signed_told(best: Array, rows: Array, sets: Array, counts: NDArray[np.int64]
     )
 
 
-def place_of(pair: PlacedPair, found: SignedMinima, row: Array) -> Place:
+def place_of(pair: PlacedPair, found: SignedMinima, row: Array) -> NearestPlace:
     """Of a row of sets, in world axes; nothing is proven of it yet."""
     whole = found.row_of(row)
     x, y = (whole[o : o + 3] @ pair.ra.T + pair.pa for o in (C.POINTS, C.POINTS + 3))
     told = row[: C.POINTS].copy()
     told[C.BOUND] = -np.inf
-    return Place(told, x, y, pair.ra @ whole[C.NORMAL : C.NORMAL + 3])
+    return NearestPlace(told, x, y, pair.ra @ whole[C.NORMAL : C.NORMAL + 3])
 
 
 def regions_of(pair: PlacedPair, found: SignedMinima, tolerance: float) -> list[Region]:
@@ -130,7 +130,7 @@ def regions_of(pair: PlacedPair, found: SignedMinima, tolerance: float) -> list[
     return told[::-1]
 
 
-def least_depth(pair: PlacedPair, place: Place) -> float:
+def least_depth(pair: PlacedPair, place: NearestPlace) -> float:
     """No translation shorter than this parts the solids; 0 or less: nothing is proven.
 
     A point of one boundary is as deep as that inside the other solid, and stays inside it.
@@ -142,7 +142,7 @@ def least_depth(pair: PlacedPair, place: Place) -> float:
     return max(depth, depth_beside(pair.b, pair.in_b(place.point_a), about)[0])
 
 
-def are_joined(pair: PlacedPair, place: Place, ball: Overlap, end: Overlap) -> bool:
+def are_joined(pair: PlacedPair, place: NearestPlace, ball: Overlap, end: Overlap) -> bool:
     """Are two balls, the first one's at a place, joined by others that are inside both solids, in a
     straight line?"""
     if min(ball.radius, end.radius) <= 0.0:
@@ -195,7 +195,7 @@ def ball_of(pair: PlacedPair, found: SignedMinima, row: Array) -> Overlap:
     return best
 
 
-def bound_of(pair: PlacedPair, found: SignedMinima, row: Array, sought: Sought) -> float:
+def bound_of(pair: PlacedPair, found: SignedMinima, row: Array, sought: SearchOptions) -> float:
     """A lower bound of the signed distance of both leaves at a minimum: B, moved by as much along
     the normal, is proven not to meet A there; -inf: not proven."""
     best, _ = started(sought, pair.size, float(np.linalg.norm(pair.relative[9:])))

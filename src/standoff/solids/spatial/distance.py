@@ -19,21 +19,21 @@ from standoff.kernels.solids.spatial_progress import BOUND
 from standoff.kernels.solids.spatial_tolerances import SURE_NORMAL, VALLEY
 from standoff.motion.pose import Pose
 from standoff.solids.answer import MOST_OPEN, Continuum, OpenPair, PointPair, SolidProximity
-from standoff.solids.asked import DEFAULT, Asked
+from standoff.solids.asked import DEFAULT, QueryOptions
 from standoff.solids.parting import Gap, parted
 from standoff.solids.spatial.contact import signed_minima_of
 from standoff.solids.spatial.held import depth_bound
-from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of
+from standoff.solids.spatial.minimum import LeastFound, SearchOptions, leaf_jet_of
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.overlap import ball_beside, common_ball
 from standoff.solids.spatial.overlapping import closed, contact_reach, told_overlapping
-from standoff.solids.spatial.pair import Place, PlacedPair, references_of
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair, references_of
 from standoff.solids.spatial.patches import patches_of
 from standoff.solids.spatial.points import distance_to_boundary, signed_distances
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import is_minimum, is_stationary
 from standoff.solids.spatial.ties import continuum_of, distinct, same_as, spots_of
-from standoff.solids.spatial.told import UNDEFINED, Inside, Told, answer_of
+from standoff.solids.spatial.told import UNDEFINED, AnswerFacts, Inside, answer_of
 from standoff.solids.spatial.tolerances import IN_CONTACT, PROOF_TOLERANCE
 from standoff.solids.spatial.tree import CORNERS
 from standoff.tracking.derivatives import Smoothness
@@ -52,7 +52,7 @@ OUTSIDE = (S.OUTSIDE, S.OUTSIDE)
 
 
 def spatial_distance(
-    a: Any, b: Any, pose_a: Any = None, pose_b: Any = None, asked: Asked = DEFAULT
+    a: Any, b: Any, pose_a: Any = None, pose_b: Any = None, asked: QueryOptions = DEFAULT
 ) -> SolidProximity:
     """The proven distance of two solids at poses.
 
@@ -63,7 +63,7 @@ def spatial_distance(
     a, b : Solid, Boundary or Body
     pose_a, pose_b : poses in the world
         The identity by default.
-    asked : Asked, optional
+    asked : QueryOptions, optional
         The options of ``so.solids.distance``. To 1e-10 of both sizes together it is proven by
         default.
 
@@ -79,12 +79,12 @@ def spatial_distance(
     proof = pair.provable(PROOF_TOLERANCE * pair.size if tolerance is None else tolerance)
     # two tolerances more, so that what lies beyond is proven to; no wall is beyond the horizon
     horizon = np.inf if within is None or inside else within + 2.0 * proof
-    sought = Sought(proof, deadline, horizon, *reach_of_minima(minima, patch))
+    sought = SearchOptions(proof, deadline, horizon, *reach_of_minima(minima, patch))
     found = pair.least(senses, sought)
     if found.met:
         return _meeting(pair, found, sought, senses)
     if within is not None and found.upper >= horizon and found.lower >= within:
-        return answer_of(pair, replace(found, upper=np.inf), [], Told(Status.FAR))
+        return answer_of(pair, replace(found, upper=np.inf), [], AnswerFacts(Status.FAR))
     if found.upper >= horizon and not found.n_open:
         raise StandoffError(
             f"No pair of points of {pair.a!r} and {pair.b!r} was found: the normals of a boundary "
@@ -94,7 +94,7 @@ def spatial_distance(
 
 
 def reach_of_minima(minima: float | None, patch: float | None) -> tuple[float, bool, int, float]:
-    """Of a search for local minima and their patches: up to where, and the rest of a `Sought`."""
+    """Of a search for local minima and their patches: up to where, and more `SearchOptions`."""
     wider = patch or 0.0
     return (minima + wider if minima else 0.0), True, MOST_OPEN, wider
 
@@ -130,7 +130,9 @@ def is_inside(pair: PlacedPair, which: str) -> bool:
     return False
 
 
-def _places(pair: PlacedPair, found: Found, senses: tuple[int, int], above: float) -> list[Place]:
+def _places(
+    pair: PlacedPair, found: LeastFound, senses: tuple[int, int], above: float
+) -> list[NearestPlace]:
     if not len(found.minima):
         return []
     if above > 0.0:
@@ -152,11 +154,11 @@ def _spread(pair: PlacedPair, rows: Array) -> list[Array]:
 
 def told_apart(
     pair: PlacedPair,
-    found: Found,
+    found: LeastFound,
     senses: tuple[int, int],
     inside: Inside,
-    sought: Sought,
-) -> tuple[SolidProximity, list[Place]]:
+    sought: SearchOptions,
+) -> tuple[SolidProximity, list[NearestPlace]]:
     """The answer where the solids are apart, and the places of its minima."""
     places = _places(pair, found, senses, sought.above)
     patches: list[tuple[PointPair, ...]] = []
@@ -187,11 +189,11 @@ def told_apart(
     if not proven and found.lower <= 0.0:
         smoothness = UNDEFINED
     left, n_left = ((), 0) if proven else open_pairs(pair, found)
-    told = Told(status, smoothness, continuum, None, inside, left, n_left, patches)
+    told = AnswerFacts(status, smoothness, continuum, None, inside, left, n_left, patches)
     return answer_of(pair, found, places, told), places
 
 
-def _smoothness(near: list[Place], continuum: Continuum | None) -> Smoothness:
+def _smoothness(near: list[NearestPlace], continuum: Continuum | None) -> Smoothness:
     if not near:
         return UNDEFINED
     if continuum:
@@ -200,7 +202,7 @@ def _smoothness(near: list[Place], continuum: Continuum | None) -> Smoothness:
 
 
 def _meeting(
-    pair: PlacedPair, found: Found, sought: Sought, senses: tuple[int, int]
+    pair: PlacedPair, found: LeastFound, sought: SearchOptions, senses: tuple[int, int]
 ) -> SolidProximity:
     """The boundaries meet: the solids overlap, or touch."""
     told = _overlapping(pair, found, sought)
@@ -219,11 +221,13 @@ def _meeting(
     overlap = common_ball(pair, np.array(starts[:STARTS]), found.tolerance, spare)
     if overlap:
         overlap = closed(pair, overlap, place, sought, gap_of)
-        return answer_of(pair, found, [place], Told(Status.OVERLAPPING, overlap=overlap))
+        return answer_of(pair, found, [place], AnswerFacts(Status.OVERLAPPING, overlap=overlap))
     return _touching(pair, sought._replace(below=np.inf, on_meeting=False), senses)
 
 
-def _overlapping(pair: PlacedPair, found: Found, sought: Sought) -> SolidProximity | None:
+def _overlapping(
+    pair: PlacedPair, found: LeastFound, sought: SearchOptions
+) -> SolidProximity | None:
     """The answer by the minima of the signed distance, where these prove that the solids
     overlap."""
     reach, minima = contact_reach(pair, sought), sought.above - sought.patch
@@ -236,7 +240,7 @@ def _overlapping(pair: PlacedPair, found: Found, sought: Sought) -> SolidProximi
     return replace(answer, counts=counts)
 
 
-def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> SolidProximity:
+def _touching(pair: PlacedPair, sought: SearchOptions, senses: tuple[int, int]) -> SolidProximity:
     """No ball was found inside both: all places of contact, and whether they can be parted."""
     # local minima below the tolerance, so that nothing is to be closed
     common = pair.least(senses, sought._replace(above=0.5 * sought.tolerance))
@@ -254,7 +258,9 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
         overlap = ball_beside(pair, np.array(spots[:MOST_COMMON]), found.tolerance, spare)
         if overlap:
             overlap = closed(pair, overlap, near[0], sought, gap_of)
-            return answer_of(pair, found, near[:1], Told(Status.OVERLAPPING, overlap=overlap))
+            return answer_of(
+                pair, found, near[:1], AnswerFacts(Status.OVERLAPPING, overlap=overlap)
+            )
     places = near
     if sought.above > 0.0:
         others = _places(pair, pair.least(senses, sought), senses, sought.above)
@@ -263,17 +269,17 @@ def _touching(pair: PlacedPair, sought: Sought, senses: tuple[int, int]) -> Soli
         places = near + [each for each in others if beyond < each.distance <= reach]
     met = replace(found, lower=-way)
     if way < np.inf:
-        told = Told(Status.TOUCHING, _smoothness(near, continuum), continuum)
+        told = AnswerFacts(Status.TOUCHING, _smoothness(near, continuum), continuum)
         return answer_of(pair, met, places, told)
     left = around(pair, near)
-    return answer_of(pair, met, places, Told(Status.WITHIN, open=left, n_open=len(left)))
+    return answer_of(pair, met, places, AnswerFacts(Status.WITHIN, open=left, n_open=len(left)))
 
 
-def _nearest(found: Found) -> Array:
+def _nearest(found: LeastFound) -> Array:
     return found.minima[found.minima[:, 0] <= found.upper + found.tolerance]
 
 
-def _contacts(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> Found:
+def _contacts(pair: PlacedPair, found: LeastFound, senses: tuple[int, int]) -> LeastFound:
     """Without the places where boundaries only cross, as those of a solid's face and of the sides
     of what stands on it, unless there is no other. Its distance is that of the nearest one left."""
     rows = _nearest(found)
@@ -290,7 +296,7 @@ def gap_of(pair: PlacedPair, tolerance: float | None = None) -> Gap | None:
     that they have no common point. `tolerance`: to what their distance is."""
     if is_inside(pair, "A") or is_inside(pair, "B"):
         return None
-    found = pair.least(OUTSIDE, Sought(tolerance or PROOF_TOLERANCE * pair.size))
+    found = pair.least(OUTSIDE, SearchOptions(tolerance or PROOF_TOLERANCE * pair.size))
     if found.met or not found.lower > 0.0:
         return None
     return found.lower, pair.place(found.best, OUTSIDE).normal
@@ -299,7 +305,7 @@ def gap_of(pair: PlacedPair, tolerance: float | None = None) -> Gap | None:
 # What a search left open, as an answer tells it: pieces of both boundaries in boxes.
 
 
-def open_pairs(pair: PlacedPair, found: Found) -> tuple[tuple[OpenPair, ...], int]:
+def open_pairs(pair: PlacedPair, found: LeastFound) -> tuple[tuple[OpenPair, ...], int]:
     """Those of a search that ended before all was closed, and how many there are; if more than are
     listed, with those that were closed by what was found later."""
     rows = found.left[found.left[:, -1] < found.upper - found.tolerance]
@@ -307,7 +313,7 @@ def open_pairs(pair: PlacedPair, found: Found) -> tuple[tuple[OpenPair, ...], in
     return tuple(_of_row(pair, row) for row in rows), count
 
 
-def around(pair: PlacedPair, places: list[Place]) -> tuple[OpenPair, ...]:
+def around(pair: PlacedPair, places: list[NearestPlace]) -> tuple[OpenPair, ...]:
     """The leaves of places at which boundaries meet."""
     rows = {tuple(place.row[1:3]): place for place in places[:MOST_OPEN]}
     found = []
@@ -358,7 +364,9 @@ def _piece(solid: SolidModel, leaf: int, box: Array) -> tuple[Feature, Array]:
 BETWEEN = np.array([0.5, 0.19, 0.81])
 
 
-def local_minima(pair: PlacedPair, found: Found, senses: tuple[int, int]) -> list[Place]:
+def local_minima(
+    pair: PlacedPair, found: LeastFound, senses: tuple[int, int]
+) -> list[NearestPlace]:
     """All that were found, the nearest first; of each set of nearest pairs one."""
     places = pair.places([found.best, *found.minima], senses)
     places = [each for k, each in enumerate(places) if k == 0 or is_minimum(pair, each)]
@@ -404,19 +412,19 @@ def _sets(
     return [np.flatnonzero(first == k).tolist() for k in np.unique(first)]
 
 
-def _parts_of(pair: PlacedPair, places: Sequence[Place]) -> NDArray[np.int64]:
+def _parts_of(pair: PlacedPair, places: Sequence[NearestPlace]) -> NDArray[np.int64]:
     """The parts of both boundaries, and the charts, that places are on: rows (n, 4)."""
     leaves = np.array([place.row[1:3] for place in places]).astype(np.int64)
     sides = [solid.leaf_table.chart[leaves[:, k]] for k, solid in enumerate((pair.a, pair.b))]
     return np.concatenate(sides, axis=1)
 
 
-def _best(pair: PlacedPair, places: list[Place]) -> Place:
+def _best(pair: PlacedPair, places: list[NearestPlace]) -> NearestPlace:
     """The nearest of some that are one, with the best bound that any of their pieces has; of those
     as near up to rounding the one on features with the fewest parameters."""
     least = min(place.distance for place in places)
 
-    def rank(place: Place) -> tuple[bool, int]:
+    def rank(place: NearestPlace) -> tuple[bool, int]:
         dims = (solid.leaves[int(place.row[1 + k])].dim for k, solid in enumerate((pair.a, pair.b)))
         return place.distance > least + VALLEY * pair.size, sum(dims)
 
@@ -427,7 +435,9 @@ def _best(pair: PlacedPair, places: list[Place]) -> Place:
     return replace(best, row=row)
 
 
-def _greatest_gap(pair: PlacedPair, place: Place, other: Place, alike: bool, most: float) -> float:
+def _greatest_gap(
+    pair: PlacedPair, place: NearestPlace, other: NearestPlace, alike: bool, most: float
+) -> float:
     """How far those between two pairs are apart, at most, as far as it matters whether this is more
     than `most`. `alike`: on the same parts."""
     if alike:
@@ -440,7 +450,7 @@ def _greatest_gap(pair: PlacedPair, place: Place, other: Place, alike: bool, mos
     return gap
 
 
-def _gap_between(pair: PlacedPair, place: Place, other: Place, share: float) -> float:
+def _gap_between(pair: PlacedPair, place: NearestPlace, other: NearestPlace, share: float) -> float:
     """How far two points are apart that are on the boundaries, a share of the way from one pair's
     to the other's; infinite where there are none."""
     spots = []

@@ -39,7 +39,7 @@ from standoff.solids.spatial.leaves import (
     ranked,
 )
 from standoff.solids.spatial.tolerances import ONE_AXIS, ROUND_KIND, TURN_ROUNDING
-from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
+from standoff.solids.spatial.trims import CoedgePiece, PieceColumns, edge_ranges
 from standoff.typing import Array
 
 # Parts of an edge at first, radians; and how often a part is halved.
@@ -50,7 +50,7 @@ TINY = float(np.finfo(np.float64).tiny)
 Range = tuple[float, float]
 
 
-class Side(NamedTuple):
+class EdgeSide(NamedTuple):
     """A face at an edge: its number, and +1 where its loop runs along the edge's parameter."""
 
     face: int
@@ -58,13 +58,16 @@ class Side(NamedTuple):
 
 
 def proven_kinds(
-    boundary: PackedParts, charts: dict[int, FaceChart], pieces: list[Piece], columns: PieceColumns
+    boundary: PackedParts,
+    charts: dict[int, FaceChart],
+    pieces: list[CoedgePiece],
+    columns: PieceColumns,
 ) -> list[EdgeKind | None]:
     """Of each edge, what is proven of all its points; None where only samples decide. `columns`
     are those of the pieces."""
     sides = _sides(boundary)
     found: list[EdgeKind | None] = [None] * boundary.n_edges
-    of_edge: dict[int, list[Piece]] = {}
+    of_edge: dict[int, list[CoedgePiece]] = {}
     for piece in pieces:
         of_edge.setdefault(piece.edge, []).append(piece)
     asked: dict[int, list[Range]] = {}
@@ -108,13 +111,13 @@ def _smooth(boundary: PackedParts, edge: int) -> bool:
     return bool(edge_flags(boundary, edge) & L.SMOOTH)
 
 
-def _asked(boundary: PackedParts, pieces: list[Piece], edge: int) -> list[Range]:
+def _asked(boundary: PackedParts, pieces: list[CoedgePiece], edge: int) -> list[Range]:
     """The parts of an edge whose kinds cones may show, if any."""
     parts = list(edge_ranges(boundary.edge_parts[edge].curve, FIRST_ARC, boundary.size))
     return [] if _smooth(boundary, edge) and _turning(boundary, pieces, parts[0]) else parts
 
 
-def _turning(boundary: PackedParts, pieces: list[Piece], part: Range) -> bool:
+def _turning(boundary: PackedParts, pieces: list[CoedgePiece], part: Range) -> bool:
     """Do normals of a face turn along a part of an edge? Then no cones of them show it smooth."""
     for piece in pieces:
         first, last = max(part[0], piece.first), min(part[1], piece.last)
@@ -125,12 +128,12 @@ def _turning(boundary: PackedParts, pieces: list[Piece], part: Range) -> bool:
     return False
 
 
-def _normal(boundary: PackedParts, piece: Piece, t: float) -> Array:
+def _normal(boundary: PackedParts, piece: CoedgePiece, t: float) -> Array:
     u, v, *_ = coedge_parameters(boundary.ints, boundary.reals, piece.coedge, t)
     return np.array(chart_normal(boundary.ints, boundary.reals, piece.chart, u, v))
 
 
-def _sides(boundary: PackedParts) -> list[list[Side]]:
+def _sides(boundary: PackedParts) -> list[list[EdgeSide]]:
     """The faces of each edge."""
     found: list[dict[int, float]] = [{} for _ in range(boundary.n_edges)]
     ints, reals = boundary.ints, boundary.reals
@@ -143,7 +146,7 @@ def _sides(boundary: PackedParts) -> list[list[Side]]:
             if edge >= 0:
                 way = float(ints[at + L.COEDGE_SIDE]) * outward
                 found[edge][int(ints[row + L.CHART_FACE])] = way
-    return [[Side(face, way) for face, way in each.items()] for each in found]
+    return [[EdgeSide(face, way) for face, way in each.items()] for each in found]
 
 
 def _tangents(curve: Curve, parts: list[Range]) -> tuple[Array, Array]:
@@ -161,7 +164,7 @@ def _tangents(curve: Curve, parts: list[Range]) -> tuple[Array, Array]:
 def _decided(
     boundary: PackedParts,
     asked: dict[int, list[Range]],
-    sides: list[list[Side]],
+    sides: list[list[EdgeSide]],
     cones: NormalCones,
 ) -> tuple[list[EdgeKind | None], NDArray[np.bool_]]:
     """The kind of each part of edges by the cones of its faces' normals and of its tangents, and
@@ -218,8 +221,8 @@ def _kinds(n: Array, m: Array, t: Array, angles: tuple[Any, Any, Any]) -> Kinds:
 def _constant(
     boundary: PackedParts,
     charts: dict[int, FaceChart],
-    pieces: list[Piece],
-    sides: list[Side],
+    pieces: list[CoedgePiece],
+    sides: list[EdgeSide],
     edge: int,
 ) -> EdgeKind | None:
     """The kind of an edge that has the same turn all along: none between parts of one surface, that

@@ -21,7 +21,7 @@ from standoff.kernels.solids.torus_potential import (
     TORUS_THROUGH,
 )
 from standoff.solids.spatial.leaves import Leaf
-from standoff.solids.spatial.minimum import Sought, leaf_jet_of, started
+from standoff.solids.spatial.minimum import SearchOptions, leaf_jet_of, started
 from standoff.solids.spatial.pair import PlacedPair, middle_of, references_of
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.solid_model import SolidModel
@@ -66,7 +66,7 @@ def depth_bound(pair: PlacedPair, tolerance: float, depth: float = 0.0) -> float
     return float(np.inf)
 
 
-class _Part(NamedTuple):
+class _BoundaryPart(NamedTuple):
     """A part of B's boundary beside which A's boundary is below one potential, or far away.
 
     Attributes
@@ -106,7 +106,7 @@ class _Sides:
         self.faces_a = np.array([k for k, leaf in enumerate(pair.a.leaves) if leaf.dim == 2])
         self.centres = np.array([pair.a.leaves[k].centre for k in self.faces_a])
         self.radii = np.array([np.linalg.norm(pair.a.leaves[k].half) for k in self.faces_a])
-        self.parts: list[_Part] = []
+        self.parts: list[_BoundaryPart] = []
         self.counts = np.zeros(8, dtype=np.int64)
 
     def hold(self) -> bool:
@@ -170,7 +170,7 @@ class _Sides:
                 on_b = self.pair.in_a(own @ self.pair.rb.T + self.pair.pb)
                 lift = float(np.linalg.norm(told[1:4] - on_b))
                 moved = self.tolerance + lift - 0.5 * self.near + 2.0 * float(np.linalg.norm(half))
-                part = _Part(
+                part = _BoundaryPart(
                     face, centre, half, told[1:4], told[4:7], float(told[7]), told[8] > 0.0,
                     potential, (leaf, box, cuts), over >= 0 and moved < self.near,
                 )  # fmt: skip
@@ -207,7 +207,7 @@ class _Sides:
 
     def _asked(self, leaf: int, box: Array, over: int, near: Ints) -> Array:
         pair, shift = self.pair, float(np.linalg.norm(self.pair.relative[9:]))
-        told, _ = started(Sought(self.tolerance), pair.size, shift)
+        told, _ = started(SearchOptions(self.tolerance), pair.size, shift)
         local_side(
             (self.packed_a, pair.b.packed),
             pair.relative,

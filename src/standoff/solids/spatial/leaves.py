@@ -33,7 +33,7 @@ from standoff.solids.spatial.tolerances import (
     SMOOTH_JOIN,
     SPOT_SPARE,
 )
-from standoff.solids.spatial.trims import Piece, PieceColumns, edge_ranges
+from standoff.solids.spatial.trims import CoedgePiece, PieceColumns, edge_ranges
 from standoff.typing import Array
 
 # Half angle of a leaf's cone of normals, radians.
@@ -67,7 +67,7 @@ class Leaf(KeepsReadOnly):
 
 
 def face_leaves(
-    boundary: PackedParts, chart: FaceChart, pieces: list[Piece], own: list[int], size: float
+    boundary: PackedParts, chart: FaceChart, pieces: list[CoedgePiece], own: list[int], size: float
 ) -> list[Leaf]:
     """The leaves of one chart; own: the numbers of its trimming curves' pieces."""
     natural = natural_of(chart)
@@ -122,7 +122,7 @@ def _angles(first: float, last: float) -> list[float]:
 
 
 def _on_it(
-    boundary: PackedParts, chart: FaceChart, rows: Array, pieces: list[Piece], own: list[int]
+    boundary: PackedParts, chart: FaceChart, rows: Array, pieces: list[CoedgePiece], own: list[int]
 ) -> tuple[Array, list[list[int]]]:
     """The rectangles that may hold points of the face, and the pieces that may meet each."""
     kept: list[Array] = []

@@ -26,7 +26,7 @@ MOST_TIES, MOST_LOCAL = 256, 1 << 14
 EITHER = S.EITHER
 
 
-class Sought(NamedTuple):
+class SearchOptions(NamedTuple):
     """How a search is to go.
 
     Attributes
@@ -50,7 +50,7 @@ class Sought(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Found:
+class LeastFound:
     """The least distance of two boundaries, in A's frame.
 
     Attributes
@@ -101,7 +101,7 @@ def new_scratch() -> tuple[Array, Any, Array]:
     return np.empty(2048 + C.LEFT_REALS * PAIRS), np.empty(2 * HEAP, dtype=np.int64), np.empty(HEAP)
 
 
-def started(sought: Sought, size: float, away: float) -> tuple[Array, Array]:
+def started(sought: SearchOptions, size: float, away: float) -> tuple[Array, Array]:
     """What a search fills: (best, minima), with what is asked of it in `best`; `away` is how far
     the solids' frames are from each other, length."""
     best = np.zeros(C.BEST_REALS + C.OPEN_REALS * sought.listed)
@@ -119,15 +119,20 @@ def started(sought: Sought, size: float, away: float) -> tuple[Array, Array]:
 
 def least_distance(
     packed_a: Any, packed_b: Any, pose: Array, senses: tuple[int, int], size: float,
-    sought: Sought | None = None,
-) -> Found:  # fmt: skip
+    sought: SearchOptions | None = None,
+) -> LeastFound:  # fmt: skip
     """Between two packed solids; `pose` (12,) is B's in A's frame, R by rows and p."""
-    asked = Sought(PROOF_TOLERANCE * size) if sought is None else sought
+    asked = SearchOptions(PROOF_TOLERANCE * size) if sought is None else sought
     return found_of(*searched(packed_a, packed_b, pose, senses, size, asked))
 
 
 def searched(
-    packed_a: Any, packed_b: Any, pose: Array, senses: tuple[int, int], size: float, sought: Sought
+    packed_a: Any,
+    packed_b: Any,
+    pose: Array,
+    senses: tuple[int, int],
+    size: float,
+    sought: SearchOptions,
 ) -> tuple[Array, Array, NDArray[np.int64]]:
     """What the compiled search fills: (best, minima, counts)."""
     best, minima = started(sought, size, float(np.linalg.norm(pose[9:])))
@@ -149,7 +154,7 @@ def nearest_row(best: Array) -> Array:
     return np.array([best[C.LEAST], best[C.LEAF_A], best[C.LEAF_B], *best[C.AT : C.AT + 4], 0.0])
 
 
-def found_of(best: Array, minima: Array, counts: Any) -> Found:
+def found_of(best: Array, minima: Array, counts: Any) -> LeastFound:
     """What a search has filled."""
     upper, tolerance = float(best[C.LEAST]), float(best[C.TOLERANCE])
     rows = minima.reshape(-1, C.MINIMUM_REALS)[: int(best[C.N_MINIMA]), : C.POINTS]
@@ -160,7 +165,7 @@ def found_of(best: Array, minima: Array, counts: Any) -> Found:
     row = nearest_row(best)
     left = best[C.OPEN_ROWS :].reshape(-1, C.OPEN_REALS)[: int(best[C.N_OPEN])]
     left = left[np.argsort(left[:, -1], kind="stable")]
-    return Found(
+    return LeastFound(
         upper, lower, tolerance, met, rows, row, left, int(best[C.LOST]),
         tuple(int(n) for n in counts[:5]), int(best[C.N_OPEN]),
     )  # fmt: skip

@@ -12,7 +12,7 @@ import numpy as np
 from standoff.bodies.hulls.fewer_points import directions
 from standoff.solids.answer import Overlap
 from standoff.solids.spatial.minimum import evaluations_of
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.solids.spatial.points import depth_beside
 from standoff.solids.spatial.tolerances import LAST_CLIMB, LEAST_LENGTH, LOOKS
 from standoff.typing import Array
@@ -128,7 +128,7 @@ def common_ball(pair: PlacedPair, starts: Array, least: float, left: int) -> Ove
     return ball._replace(depth=both.depth) if ball.radius > least else None
 
 
-def deepened(pair: PlacedPair, place: Place, left: int) -> Overlap:
+def deepened(pair: PlacedPair, place: NearestPlace, left: int) -> Overlap:
     """The two balls about a point near to a place of overlap."""
     ascent, known = Ascent(pair, left), np.zeros((1, 2, 7))
     known[0, :, :3] = place.point_a, place.point_b

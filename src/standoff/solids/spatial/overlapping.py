@@ -23,11 +23,11 @@ from standoff.solids.spatial.contact import (
     regions_of,
 )
 from standoff.solids.spatial.held import depth_bound
-from standoff.solids.spatial.minimum import Found, Sought
+from standoff.solids.spatial.minimum import LeastFound, SearchOptions
 from standoff.solids.spatial.overlap import ball_beside, common_ball, deepened
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.solids.spatial.patches import patch_told
-from standoff.solids.spatial.told import Told, answer_of
+from standoff.solids.spatial.told import AnswerFacts, answer_of
 from standoff.solids.spatial.tolerances import (
     BESIDE,
     CONTACT_REACH,
@@ -39,12 +39,12 @@ from standoff.solids.tolerances import PARTED_BY
 from standoff.tracking.status import Status
 from standoff.typing import Array
 
-Answered = tuple[SolidProximity, list[Place]]
+Answered = tuple[SolidProximity, list[NearestPlace]]
 """An answer, and the places of its minima."""
 NO_ROWS = np.empty((0, 11))
 
 
-def contact_reach(pair: PlacedPair, sought: Sought) -> Sought:
+def contact_reach(pair: PlacedPair, sought: SearchOptions) -> SearchOptions:
     """The same with how deep an overlap is looked for at least."""
     return sought._replace(above=max(sought.above, CONTACT_REACH * pair.size + sought.patch))
 
@@ -52,7 +52,7 @@ def contact_reach(pair: PlacedPair, sought: Sought) -> Sought:
 def told_overlapping(
     pair: PlacedPair,
     signed: SignedMinima,
-    sought: Sought,
+    sought: SearchOptions,
     minima: float | None,
     gap_of: GapOf,
 ) -> Answered | None:
@@ -88,7 +88,7 @@ def told_overlapping(
 
 
 def closed(
-    pair: PlacedPair, overlap: Overlap, place: Place, sought: Sought, gap_of: GapOf
+    pair: PlacedPair, overlap: Overlap, place: NearestPlace, sought: SearchOptions, gap_of: GapOf
 ) -> Overlap:
     """An overlap whose bounds are brought near to each other, where they are not: by a shorter way
     out, by a depth elsewhere than at its deepest place, and by what holds all round. Where no ball
@@ -124,7 +124,7 @@ def told_in_contact(
     felt: NDArray[np.bool_],
     proven: float,
     parting: Array,
-    sought: Sought,
+    sought: SearchOptions,
     minima: float | None,
 ) -> SolidProximity:
     """The answer of a frame by the places that are followed, of which one that is felt proves that
@@ -165,7 +165,11 @@ def _overlap(pair: PlacedPair, signed: SignedMinima, regions: Sequence[Region]) 
 
 
 def _told(
-    pair: PlacedPair, signed: SignedMinima, overlap: Overlap, rows: Sequence[Array], sought: Sought
+    pair: PlacedPair,
+    signed: SignedMinima,
+    overlap: Overlap,
+    rows: Sequence[Array],
+    sought: SearchOptions,
 ) -> Answered:
     """The answer that tells these minima, rows of sets, of which the first is its own."""
     places = [place_of(pair, signed, row) for row in rows]
@@ -173,23 +177,23 @@ def _told(
         if place.distance < 0.0:
             place.row[BOUND] = bound_of(pair, signed, row, sought)
     patches = [patch_told(pair, row) for row in rows] if sought.patch > 0.0 else []
-    told = Told(Status.OVERLAPPING, overlap=overlap, patches=patches)
+    told = AnswerFacts(Status.OVERLAPPING, overlap=overlap, patches=patches)
     return answer_of(pair, _found(places[0], signed, sought), places, told), places
 
 
-def _deep(pair: PlacedPair, place: Place) -> float:
+def _deep(pair: PlacedPair, place: NearestPlace) -> float:
     """How deep a place's point of one boundary is in the other solid, proven as far as can be."""
     return max(pair.depths(place.point_b)[0], pair.depths(place.point_a)[1])
 
 
-def _found(first: Place, signed: SignedMinima, sought: Sought) -> Found:
+def _found(first: NearestPlace, signed: SignedMinima, sought: SearchOptions) -> LeastFound:
     row, counts = first.row, (signed.evaluations, 0, 0, 0, 0)
-    return Found(
+    return LeastFound(
         -np.inf, -np.inf, sought.tolerance, True, row[None], row, NO_ROWS, 0, counts, 0
     )  # fmt: skip
 
 
-def way_apart(places: Sequence[Place], spare: float) -> Array | None:
+def way_apart(places: Sequence[NearestPlace], spare: float) -> Array | None:
     """The shortest vector by which B is moved so that it is clear of all places by `spare`, to
     first order; None where there is none."""
     normals = np.array([place.normal for place in places])

@@ -62,7 +62,7 @@ def own_pairs(solid: SolidModel, within: float) -> tuple[list[OwnPairs], int]:
     keys = np.sort(faces, axis=1)
     order = np.lexsort((keys[:, 1], keys[:, 0]))
     starts = np.flatnonzero(np.any(np.diff(keys[order], axis=0, prepend=-1) != 0, axis=1))
-    joints = Joints(solid.boundary, JOINT_ROOM * within)
+    joints = SharedFeatures(solid.boundary, JOINT_ROOM * within)
     found: list[OwnPairs] = []
     beside = 0
     for rows in np.split(order, starts[1:]):
@@ -142,7 +142,7 @@ def _across(jet: Any) -> tuple[float, float]:
     return tuple(area / x if x > 0.0 else 0.0 for x in lengths)  # type: ignore[return-value]
 
 
-class Joints:
+class SharedFeatures:
     """The edges and vertices that faces have in common, as points with radii round them, of `least`
     at least, length."""
 

@@ -17,7 +17,7 @@ from standoff.motion.pose import Pose
 from standoff.motion.vectors import pose_row
 from standoff.solids.answer import NearestPair
 from standoff.solids.spatial.half_space import of_pair
-from standoff.solids.spatial.minimum import Found, Sought, leaf_jet_of, least_distance
+from standoff.solids.spatial.minimum import LeastFound, SearchOptions, leaf_jet_of, least_distance
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.sides import outside_direction
 from standoff.solids.spatial.solid_model import SolidModel
@@ -33,7 +33,7 @@ REFERENCES = 6
 
 
 @dataclass(frozen=True)
-class Place:
+class NearestPlace:
     """A pair of nearest points in world axes, with their leaves."""
 
     row: Array
@@ -95,7 +95,7 @@ class PlacedPair:
         away = float(np.linalg.norm(self.pb - self.pa))
         return max(tolerance, 4.0 * PROOF_ROUNDING * (self.size + away))
 
-    def least(self, senses: tuple[int, int], sought: Sought) -> Found:
+    def least(self, senses: tuple[int, int], sought: SearchOptions) -> LeastFound:
         """The search between both boundaries, each seen from outside or inside."""
         return least_distance(
             self.a.packed, self.b.packed, self.relative, senses, self.size, sought
@@ -111,11 +111,11 @@ class PlacedPair:
         pose_a, pose_b = self._given
         return PlacedPair(self.b, self.a, pose_b, pose_a)
 
-    def place(self, row: Array, senses: tuple[int, int]) -> Place:
+    def place(self, row: Array, senses: tuple[int, int]) -> NearestPlace:
         """Of a row (distance, leaf_a, leaf_b, parameters)."""
         return self.places([row], senses)[0]
 
-    def places(self, rows: Sequence[Array] | Array, senses: tuple[int, int]) -> list[Place]:
+    def places(self, rows: Sequence[Array] | Array, senses: tuple[int, int]) -> list[NearestPlace]:
         """Of rows (distance, leaf_a, leaf_b, parameters)."""
         found = []
         for row, x, y in zip(rows, *self.points_of(np.array(rows)), strict=True):
@@ -123,7 +123,7 @@ class PlacedPair:
             length = float(np.linalg.norm(away))
             told = length > SURE_NORMAL * self.size
             normal = away / length if told else self._normal_at(row, senses)
-            found.append(Place(row, x, y, normal))
+            found.append(NearestPlace(row, x, y, normal))
         return found
 
     def points_of(self, rows: Array) -> tuple[Array, Array]:
@@ -165,7 +165,7 @@ class PlacedPair:
         normal = np.cross(*ways)
         return normal if float(np.linalg.norm(normal)) > COLLAPSED_FRAME else None
 
-    def nearest_pair(self, place: Place, lower: float) -> NearestPair:
+    def nearest_pair(self, place: NearestPlace, lower: float) -> NearestPair:
         row = place.row
         leaf_a, leaf_b = int(row[1]), int(row[2])
         return NearestPair(
@@ -180,7 +180,7 @@ class PlacedPair:
             self.b.parameters_of(leaf_b, row[5:7]),
         )
 
-    def gradient(self, place: Place) -> Array:
+    def gradient(self, place: NearestPlace) -> Array:
         """(12,) by unit twists (v_A, omega_A, v_B, omega_B), world axes."""
         to = np.zeros(12)
         origins = [np.asarray(pose.translation) for pose in self._given]

@@ -16,15 +16,15 @@ from standoff.kernels.solids.minima_sets import (
     SET_ROW,
 )
 from standoff.solids.answer import PointPair
-from standoff.solids.spatial.minimum import Found
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.minimum import LeastFound
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.typing import Array
 
 
 def patches_of(
     pair: PlacedPair,
-    minima: Sequence[Place],
-    found: Found,
+    minima: Sequence[NearestPlace],
+    found: LeastFound,
     senses: tuple[int, int],
     wider: float,
 ) -> list[tuple[PointPair, ...]]:
@@ -39,7 +39,7 @@ def patches_of(
 
 
 def rows_of(
-    pair: PlacedPair, minima: Sequence[Place], others: Sequence[Place] = ()
+    pair: PlacedPair, minima: Sequence[NearestPlace], others: Sequence[NearestPlace] = ()
 ) -> tuple[Array, Array]:
     """Local minima as the kernels have them: rows (n, 17) of these and of other pairs, and of sets
     (m, 41)."""

@@ -17,8 +17,8 @@ from standoff.solids.asked import DEADLINE
 from standoff.solids.spatial.minimum import (
     EITHER,
     IDENTITY,
-    Found,
-    Sought,
+    LeastFound,
+    SearchOptions,
     leaf_jet_of,
     least_distance,
     scratch,
@@ -89,7 +89,7 @@ def packed_point() -> tuple[NDArray[np.int64], Array, NDArray[np.int64], Array]:
 POINT = packed_point()
 
 
-def distance_to_boundary(solid: SolidModel, point: Array) -> Found:
+def distance_to_boundary(solid: SolidModel, point: Array) -> LeastFound:
     """From one point, own frame, without a sign."""
     # the solid is seen from the point, which is the origin
     pose = np.concatenate([IDENTITY[:9], -point])
@@ -104,7 +104,7 @@ def depth_beside(
 
     It is proven to a share of itself only, which takes a tenth of the time.
     """
-    best, minima = started(Sought(0.0), solid.size, 0.0)
+    best, minima = started(SearchOptions(0.0), solid.size, 0.0)
     told, asked = np.empty(5), [about, solid.size, PROOF_ROUNDING, PROOF_TOLERANCE, DEADLINE]
     point_depth(
         solid.packed,
@@ -175,7 +175,7 @@ def _by_ray(solid: SolidModel, point: Array) -> float:
     return -1.0 if solid.rays.inside(point) else 1.0
 
 
-def _alone(solid: SolidModel, found: Found) -> bool:
+def _alone(solid: SolidModel, found: LeastFound) -> bool:
     """Are all nearest points that were found one point?"""
     spots = np.array(
         [leaf_jet_of(solid.packed, int(r[2]), r[5], r[6])[0] for r in found.minima[:16]]

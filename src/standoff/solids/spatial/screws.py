@@ -23,7 +23,7 @@ SAMPLES = 8
 
 
 @dataclass(frozen=True)
-class Screw:
+class ScrewSymmetry:
     """A screw motion: its rise per radian, length, a point of its axis, and the axis."""
 
     rise: float
@@ -38,7 +38,7 @@ class _Thread:
     charts: list[int]
     points: Array
     normals: Array
-    screw: Screw
+    screw: ScrewSymmetry
 
 
 def put_screws(
@@ -94,7 +94,7 @@ def _threads(charts: Iterable[FaceChart]) -> list[_Thread]:
     return found
 
 
-def _is_along(screw: Screw, points: Array, normals: Array) -> bool:
+def _is_along(screw: ScrewSymmetry, points: Array, normals: Array) -> bool:
     """Does a screw motion move a surface along itself, nearly?"""
     ways = np.cross(screw.axis, points - screw.point) + screw.rise * screw.axis
     speeds = np.linalg.norm(ways, axis=1)
@@ -116,7 +116,7 @@ def _sampled(chart: FaceChart) -> tuple[Array, Array]:
     return np.reshape(points, (-1, 3)), np.reshape(normals, (-1, 3))
 
 
-def screw_of(points: Array, normals: Array) -> Screw | None:
+def screw_of(points: Array, normals: Array) -> ScrewSymmetry | None:
     """The screw motion that moves a surface along itself, nearly; None where there is none, or
     more than one, or it is a translation.
 
@@ -150,4 +150,4 @@ def screw_of(points: Array, normals: Array) -> Screw | None:
     if far or values[-2] < MANY_SCREWS * values[0] or turn < LEAST_TURN:
         return None
     rise = size * float(v @ w) / turn**2
-    return Screw(rise, centre + size * np.cross(w, v) / turn**2, w / turn)
+    return ScrewSymmetry(rise, centre + size * np.cross(w, v) / turn**2, w / turn)

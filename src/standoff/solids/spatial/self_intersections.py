@@ -16,7 +16,7 @@ from standoff.kernels.entries.queries import on_face
 from standoff.kernels.entries.solids import meet_own_leaves
 from standoff.kernels.solids import spatial_self as K
 from standoff.motion.pose import Pose
-from standoff.solids.spatial.minimum import Sought, leaf_jet_of, started
+from standoff.solids.spatial.minimum import SearchOptions, leaf_jet_of, started
 from standoff.solids.spatial.own_pairs import OwnPairs, own_pairs
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.solid_model import SolidModel
@@ -189,7 +189,7 @@ def _shared_out(groups: Iterable[OwnPairs]) -> Iterator[OwnPairs]:
 
 def _looked_at(solid: SolidModel, group: OwnPairs, tolerance: float) -> Array:
     """Rows (what is found, distance, parameters) of pairs of leaves."""
-    best = started(Sought(PROVEN_SHARE * tolerance, BUDGET, tolerance), solid.size, 0.0)[0]
+    best = started(SearchOptions(PROVEN_SHARE * tolerance, BUDGET, tolerance), solid.size, 0.0)[0]
     found = np.zeros((len(group.leaves), K.FOUND_REALS))
     counts = np.zeros(8, dtype=np.int64)
     meet_own_leaves(

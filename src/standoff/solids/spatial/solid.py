@@ -15,7 +15,7 @@ from standoff.errors import StandoffError
 from standoff.geometry.surfaces import Surface
 from standoff.motion import Pose, PoseLike
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import Asked
+from standoff.solids.asked import QueryOptions
 from standoff.solids.plotted import Plotted, checked_answer
 from standoff.solids.spatial.distance import spatial_distance
 from standoff.solids.spatial.models import as_model
@@ -139,7 +139,7 @@ class Solid(SolidModel, Plotted):
         -------
         SolidProximity
         """
-        return spatial_distance(a, b, pose_a, pose_b, Asked(within=within))
+        return spatial_distance(a, b, pose_a, pose_b, QueryOptions(within=within))
 
     def tracked(self, a: Any, b: Any, *given: Any, **options: Any) -> Any:
         """The tracker that ``so.Tracker`` makes of two solids, or of one and a `Body`.

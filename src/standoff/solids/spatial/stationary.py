@@ -11,7 +11,7 @@ from standoff.kernels.solids.planar_tolerances import AT_OPTIMUM
 from standoff.kernels.solids.spatial_tolerances import FLAT_VALLEY
 from standoff.kernels.solids.stationary import FAN_INTS
 from standoff.solids.spatial.minimum import leaf_jet_of
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.solids.spatial.sides import charts_at, corners_at
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.tolerances import COLLAPSED_SIDE
@@ -21,19 +21,19 @@ from standoff.typing import Array
 WAYS_AROUND = 17
 
 
-def is_minimum(pair: PlacedPair, place: Place) -> bool:
+def is_minimum(pair: PlacedPair, place: NearestPlace) -> bool:
     """Can no small step on either boundary make a pair nearer, to first order, and is it no saddle
     of its two leaves?"""
     return _told(pair, place, AT_OPTIMUM, FLAT_VALLEY)
 
 
-def is_stationary(pair: PlacedPair, place: Place, sine: float) -> bool:
+def is_stationary(pair: PlacedPair, place: NearestPlace, sine: float) -> bool:
     """Can no small step on either boundary make a pair nearer along its normal, to first order?
     `sine`: of the angle by which one may."""
     return _told(pair, place, sine, 0.0)
 
 
-def _told(pair: PlacedPair, place: Place, sine: float, spare: float) -> bool:
+def _told(pair: PlacedPair, place: NearestPlace, sine: float, spare: float) -> bool:
     solids, fans = (pair.a.packed, pair.b.packed), (fans_of(pair.a), fans_of(pair.b))
     asked = np.array([*(pair.ra.T @ place.normal), sine, spare])
     return bool(stationary(solids, pair.relative, fans, place.row, asked))

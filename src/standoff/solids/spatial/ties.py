@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from standoff.kernels.entries.minima import one_place
 from standoff.solids.answer import Continuum
-from standoff.solids.spatial.minimum import Found
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.minimum import LeastFound
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.solids.spatial.points import signed_distances
 from standoff.solids.spatial.tolerances import (
     BENDS_LESS,
@@ -29,10 +29,10 @@ WIDE = 0.3
 OPEN_TURN = 1.6
 
 
-def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
+def distinct(pair: PlacedPair, places: Sequence[NearestPlace]) -> list[NearestPlace]:
     """Without those that were found twice."""
     ordered = sorted(places, key=lambda each: each.distance)
-    kept: list[Place] = []
+    kept: list[NearestPlace] = []
     again = np.zeros(len(ordered), dtype=bool)
     spots = spots_of(ordered)
     for k, place in enumerate(ordered):
@@ -42,7 +42,7 @@ def distinct(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     return kept
 
 
-def spots_of(places: Sequence[Place]) -> Array:
+def spots_of(places: Sequence[NearestPlace]) -> Array:
     """Both points and the distance of each (n, 7)."""
     return np.array([place.spot for place in places]).reshape(-1, 7)
 
@@ -54,7 +54,9 @@ def same_as(spots: Array, k: int, size: float) -> NDArray[np.bool_]:
     return out > 0.0
 
 
-def continuum_of(pair: PlacedPair, places: Sequence[Place], found: Found) -> Continuum | None:
+def continuum_of(
+    pair: PlacedPair, places: Sequence[NearestPlace], found: LeastFound
+) -> Continuum | None:
     """The continuum that the nearest place belongs to; None if it is a single one.
 
     It is one if Newton's method finds other pairs at the same distance from other starts in the
@@ -101,7 +103,7 @@ def _is_filled(pair: PlacedPair, every: Sequence[tuple[Array, Array]], tolerance
     return True
 
 
-def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
+def _likeliest(pair: PlacedPair, places: Sequence[NearestPlace]) -> list[NearestPlace]:
     """Places of pairs of leaves with the most parameters first; among them those of planes, then
     those within both leaves, as two may have but a corner in common, and then those of features
     that have the most places in common. Each pair of features comes before any comes again."""
@@ -127,7 +129,7 @@ def _likeliest(pair: PlacedPair, places: Sequence[Place]) -> list[Place]:
     return [places[k] for k in sorted(order, key=lambda k: turn[k])]
 
 
-def _others(pair: PlacedPair, place: Place, found: Found) -> list[tuple[Array, Array]]:
+def _others(pair: PlacedPair, place: NearestPlace, found: LeastFound) -> list[tuple[Array, Array]]:
     """Pairs (x, y) in the leaves of a place at the least distance, more than a little away.
 
     Where that is not proven Newton's method may come to nearer ones: they are no ties.
@@ -155,7 +157,7 @@ def starts(pair: PlacedPair, row: Array) -> Array:
 
 
 def _described(
-    place: Place, others: list[tuple[Array, Array]], places: Sequence[Place]
+    place: NearestPlace, others: list[tuple[Array, Array]], places: Sequence[NearestPlace]
 ) -> Continuum:
     near = np.array([x for x, _ in others]) - place.point_a
     if float(np.ptp(near, axis=0).max()) == 0.0 or not near.any():

@@ -16,8 +16,8 @@ from standoff.solids.answer import (
     PointPair,
     SolidProximity,
 )
-from standoff.solids.spatial.minimum import Found
-from standoff.solids.spatial.pair import Place, PlacedPair
+from standoff.solids.spatial.minimum import LeastFound
+from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
 
@@ -25,7 +25,7 @@ UNDEFINED = Smoothness.UNDEFINED
 Inside = Literal["A", "B", ""]
 
 
-class Told(NamedTuple):
+class AnswerFacts(NamedTuple):
     """What an answer says beside its numbers."""
 
     status: Status
@@ -43,7 +43,9 @@ UNSEEN = NearestPair(
 )  # fmt: skip
 
 
-def answer_of(pair: PlacedPair, found: Found, places: list[Place], told: Told) -> SolidProximity:
+def answer_of(
+    pair: PlacedPair, found: LeastFound, places: list[NearestPlace], told: AnswerFacts
+) -> SolidProximity:
     distance, lower, upper = found.upper, found.lower, found.upper
     if told.overlap:
         upper = -told.overlap.depth

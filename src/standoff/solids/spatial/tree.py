@@ -26,7 +26,7 @@ from standoff.solids.spatial.leaves import (
 )
 from standoff.solids.spatial.screws import put_screws
 from standoff.solids.spatial.tolerances import CONE_ROUNDINGS, NO_AXIS
-from standoff.solids.spatial.trims import Piece, columns_of, pieces_of
+from standoff.solids.spatial.trims import CoedgePiece, columns_of, pieces_of
 from standoff.typing import Array
 
 CORNERS = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=float)
@@ -39,7 +39,7 @@ class _Node:
         self.reals = np.zeros(S.NODE_REALS)
 
 
-def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[Piece], tuple[int, ...]]:
+def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[CoedgePiece], tuple[int, ...]]:
     """All leaves of a boundary, the pieces of its trimming curves, and the edges whose kind only
     samples decide."""
     charts = {c.number: c for c in face_charts(boundary)}
@@ -124,13 +124,13 @@ def packed_leaves(boundary: Boundary, faces: tuple[int, ...] = ()) -> Packed:
     return Packed(packed, numbers, leaves, sampled)
 
 
-def _feature(boundary: PackedParts, piece: Piece) -> int:
+def _feature(boundary: PackedParts, piece: CoedgePiece) -> int:
     if piece.edge >= 0:
         return boundary.n_faces + piece.edge
     return boundary.n_faces + boundary.n_edges - 1 - piece.edge
 
 
-def _piece_reals(p: Piece) -> list[float]:
+def _piece_reals(p: CoedgePiece) -> list[float]:
     return [p.first, p.last, p.low[0], p.high[0], p.low[1], p.high[1], *p.bend, p.shift, *p.bounds,
             0.0]  # fmt: skip
 

@@ -32,7 +32,7 @@ and v along it, each (n, 2)."""
 
 
 @dataclass(frozen=True)
-class Piece:
+class CoedgePiece:
     """A part of a packed coedge.
 
     Attributes
@@ -82,7 +82,7 @@ class PieceColumns(NamedTuple):
         return found
 
 
-def columns_of(pieces: list[Piece]) -> PieceColumns:
+def columns_of(pieces: list[CoedgePiece]) -> PieceColumns:
     straight = np.array([p.straight is not None and p.last > p.first for p in pieces], dtype=bool)
     corners = [np.zeros((2, 2)) if p.straight is None else p.straight for p in pieces]
     boxes = np.reshape([(p.low, p.high) for p in pieces], (-1, 2, 2))
@@ -96,7 +96,7 @@ def columns_of(pieces: list[Piece]) -> PieceColumns:
     )
 
 
-def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[Piece]:
+def pieces_of(boundary: PackedParts, charts: dict[int, FaceChart]) -> list[CoedgePiece]:
     """The pieces of all trimming curves; on periodic charts with their images a turn away that the
     chart's rectangle reaches."""
     coedges = [(number, k) for number in charts for k in coedge_range(boundary, number)]
@@ -145,7 +145,7 @@ def _bounds(boundary: PackedParts, ends: dict[int, Array]) -> dict[int, Array]:
     return found
 
 
-def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
+def _shifted(piece: CoedgePiece, chart: FaceChart) -> list[CoedgePiece]:
     u0, u1 = chart.rectangle[:2]
     found = []
     for turns in (-1, 0, 1):
@@ -155,7 +155,7 @@ def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
             continue
         straight = None if piece.straight is None else piece.straight + move
         found.append(
-            Piece(piece.coedge, piece.chart, piece.edge, piece.first, piece.last, low, high,
+            CoedgePiece(piece.coedge, piece.chart, piece.edge, piece.first, piece.last, low, high,
                   piece.bend, float(move[0]), piece.bounds, straight)
         )  # fmt: skip
     return found
@@ -163,7 +163,7 @@ def _shifted(piece: Piece, chart: FaceChart) -> list[Piece]:
 
 def _pieces(
     boundary: PackedParts, of: tuple[int, int], ends: Array, bounds: Array, boxes: Boxes
-) -> list[Piece]:
+) -> list[CoedgePiece]:
     """The pieces of a coedge, `of` (chart, coedge)."""
     chart, coedge = of
     kind = packed_pcurve(boundary, coedge)[0]
@@ -179,7 +179,7 @@ def _pieces(
             # along an isoline the level is one number, free of the box's margin
             low, high = straight.min(axis=0), straight.max(axis=0)
         found.append(
-            Piece(coedge, chart, edge, a, b, low, high, bends[k], 0.0, bounds[k], straight)
+            CoedgePiece(coedge, chart, edge, a, b, low, high, bends[k], 0.0, bounds[k], straight)
         )
     return found
 

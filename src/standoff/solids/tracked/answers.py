@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class Places(NamedTuple):
+class WitnessPlaces(NamedTuple):
     """Where the witness points of many frames lie.
 
     Attributes
@@ -70,7 +70,7 @@ class SolidAnswers(KeepsReadOnly):
         plain: tuple[NDArray[np.object_], float],
         make: Callable[[int], SolidProximity],
         minima: Callable[[], tuple[LocalMinima, tuple[MinimumEvent, ...]]],
-        where: Callable[[], Places],
+        where: Callable[[], WitnessPlaces],
     ) -> None:
         self._make, self._special, self._tell = make, dict(special), minima
         self._where = where
@@ -102,7 +102,7 @@ class SolidAnswers(KeepsReadOnly):
         self.unique[k] = answer.unique
 
     @cached_property
-    def places(self) -> Places:
+    def places(self) -> WitnessPlaces:
         """The features of the witness points of all frames, and their parameters, as arrays."""
         return self._where()
 

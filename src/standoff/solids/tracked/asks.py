@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from standoff.kernels.entries import solid_blocks as B
 from standoff.motion import Pose
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import DEADLINE, Asked
+from standoff.solids.asked import DEADLINE, QueryOptions
 from standoff.solids.spatial.distance import (
     reach_of_minima,
     senses_of,
     spatial_distance,
     told_apart,
 )
-from standoff.solids.spatial.minimum import Sought
+from standoff.solids.spatial.minimum import SearchOptions
 from standoff.solids.spatial.overlapping import contact_reach, told_in_contact
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import rows_of
@@ -28,17 +28,17 @@ from standoff.solids.spatial.told import Inside
 from standoff.solids.spatial.tolerances import CONTACT_REACH, PROOF_ROUNDING, PROOF_TOLERANCE
 from standoff.solids.tracked.contact import (
     ContactFrames,
+    ContactPlaces,
     ContactWork,
-    Places,
     begun,
     unknown,
 )
 from standoff.solids.tracked.front import (
     NO_MINIMA,
-    Frames,
-    Front,
+    FrontArrays,
+    FrontFrames,
+    KeptFront,
     Minima,
-    Work,
     front_at,
     front_in_contact,
     room_for,
@@ -47,12 +47,12 @@ from standoff.tracking.status import Status
 from standoff.typing import Array
 
 
-class Asks(NamedTuple):
+class TrackedPair(NamedTuple):
     """Two solids, and the options of their tracker."""
 
     a: SolidModel
     b: SolidModel
-    options: Asked
+    options: QueryOptions
 
     @property
     def proof(self) -> float:
@@ -60,15 +60,15 @@ class Asks(NamedTuple):
         tolerance = self.options.tolerance
         return PROOF_TOLERANCE * (self.a.size + self.b.size) if tolerance is None else tolerance
 
-    def in_time(self) -> Asks:
+    def in_time(self) -> TrackedPair:
         """The same with the time that a query has by default, at least."""
         most = max(self.options.deadline, DEADLINE)
         return self._replace(options=self.options._replace(deadline=most))
 
-    def sought(self, pair: PlacedPair) -> Sought:
+    def sought(self, pair: PlacedPair) -> SearchOptions:
         """What a search at poses is asked."""
         reach = reach_of_minima(self.options.minima, self.options.patch)
-        return Sought(pair.provable(self.proof), self.options.deadline, np.inf, *reach)
+        return SearchOptions(pair.provable(self.proof), self.options.deadline, np.inf, *reach)
 
     @property
     def minima(self) -> Minima:
@@ -91,12 +91,12 @@ class Asks(NamedTuple):
         found[B.Q_POINTS] = DEADLINE
         return found
 
-    def frames(self, front: Front, room: Work | None = None) -> Frames:
+    def frames(self, front: KeptFront, room: FrontArrays | None = None) -> FrontFrames:
         """Frames from a front on; `room`: arrays that nobody else writes to meanwhile."""
         packed = self.a.packed, self.b.packed
-        return Frames(packed, front, self.proof, self.options.deadline, self.minima, room)
+        return FrontFrames(packed, front, self.proof, self.options.deadline, self.minima, room)
 
-    def cold(self, pair: PlacedPair, born: int = 0) -> tuple[SolidProximity, Front | None]:
+    def cold(self, pair: PlacedPair, born: int = 0) -> tuple[SolidProximity, KeptFront | None]:
         """An answer from nothing, with the front that frames go on from where there is one. `born`:
         how many branches there were before."""
         pose_a, pose_b = (Pose.from_checked(row[:9].reshape(3, 3), row[9:]) for row in pair.poses)
@@ -124,8 +124,12 @@ class Asks(NamedTuple):
         return answer, frames.kept()
 
     def met(
-        self, placed: tuple[PlacedPair, Array], front: Front | None, born: int, before: Array | None
-    ) -> tuple[SolidProximity, Front, NDArray[np.int64]] | None:
+        self,
+        placed: tuple[PlacedPair, Array],
+        front: KeptFront | None,
+        born: int,
+        before: Array | None,
+    ) -> tuple[SolidProximity, KeptFront, NDArray[np.int64]] | None:
         """The answer of a frame in which the solids overlap, the front after it, and which branches
         have come to the place of another one; None where that is not proven. `placed`: both, and
         B's pose (12,) in A's frame; `before`: that in the frame before, if they did not overlap in
@@ -140,17 +144,17 @@ class Asks(NamedTuple):
             return None
         return self.in_contact(pair, frames.places()), frames.kept(), frames.merged()
 
-    def contact(self, front: Front, room: ContactWork | None = None) -> ContactFrames:
+    def contact(self, front: KeptFront, room: ContactWork | None = None) -> ContactFrames:
         """Frames from a front with a contact on; `room`: as of `frames`."""
         return ContactFrames((self.a, self.b), front, self.numbers, room)
 
-    def in_contact(self, pair: PlacedPair, places: Places) -> SolidProximity:
+    def in_contact(self, pair: PlacedPair, places: ContactPlaces) -> SolidProximity:
         """The answer of a frame of a contact."""
         reach = contact_reach(pair, self.sought(pair))
         return told_in_contact(pair, *places, reach, self.options.minima)
 
     def apart(
-        self, pair: PlacedPair, frames: Frames, inside: Inside, motion: float
+        self, pair: PlacedPair, frames: FrontFrames, inside: Inside, motion: float
     ) -> SolidProximity:
         """The answer of the last frame by what was found in it, after a motion of B, length."""
         sought = self.sought(pair)

@@ -31,13 +31,13 @@ from standoff.solids.spatial.points import POINT
 from standoff.solids.spatial.sides import vertex_normals_of
 from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
-from standoff.solids.tracked.front import MOST_BRANCHES, Front, merged_of
+from standoff.solids.tracked.front import MOST_BRANCHES, KeptFront, merged_of
 from standoff.typing import Array
 
 N_COUNTS = 16
 
 
-class Places(NamedTuple):
+class ContactPlaces(NamedTuple):
     """What a frame of a contact tells.
 
     Attributes
@@ -85,7 +85,7 @@ def _room(thread: int) -> ContactWork:
     return new_contact_room()
 
 
-def begun(before: Array, front: Front) -> Array:
+def begun(before: Array, front: KeptFront) -> Array:
     """A contact before its first frame, of solids that did not overlap with B at a pose (12,) in
     A's frame: no place is felt that is deeper than B has moved since. Its branches are those of the
     front, as many as there is room for."""
@@ -114,7 +114,7 @@ class ContactFrames:
     """
 
     def __init__(
-        self, solids: tuple[SolidModel, SolidModel], front: Front, asked: Array,
+        self, solids: tuple[SolidModel, SolidModel], front: KeptFront, asked: Array,
         room: ContactWork | None = None,
     ) -> None:  # fmt: skip
         assert front.contact is not None
@@ -141,20 +141,20 @@ class ContactFrames:
         follow_contact(*self.call(pose))
         return bool(self.told[FIRST] >= 0.0)
 
-    def places(self) -> Places:
+    def places(self) -> ContactPlaces:
         """What the last frame found."""
         kept, room, told, n = self.work.kept, self.work.room, self.told, int(self.told[N_PLACES])
         sets = room[AT_SETS : AT_SETS + SET_REALS * n]
         signed = signed_told(room, room[AT_NORMALS:AT_SETS], sets, self.work.counts)
         rows = kept[P.F_AT : P.F_AT + P.PLACE_REALS * n].reshape(-1, P.PLACE_REALS)
         parting = told[PARTING : PARTING + 3].copy()
-        return Places(signed, rows[:, P.P_FELT] > 0.0, float(told[DEPTH]), parting)
+        return ContactPlaces(signed, rows[:, P.P_FELT] > 0.0, float(told[DEPTH]), parting)
 
     def merged(self) -> NDArray[np.int64]:
         """Of the last frame, as `Frames.merged` of the front."""
         return merged_of(self.work.kept[P.F_STORE :], self.work.room[AT_MERGED:])
 
-    def kept(self) -> Front:
+    def kept(self) -> KeptFront:
         """The front after the last frame in which the solids overlap: its rows stay as they are,
         and the branches are those of the contact."""
         kept, store = self.work.kept, self.work.store.copy()

@@ -83,7 +83,7 @@ class _Live(NamedTuple):
     features: tuple[Feature, Feature]
 
 
-class Course(NamedTuple):
+class EventCourse(NamedTuple):
     """What events are told of.
 
     Attributes
@@ -100,7 +100,7 @@ class Course(NamedTuple):
     merged: Mapping[tuple[int, int], int]
 
 
-def events_of(course: Course, before: SolidProximity) -> Iterator[MinimumEvent]:
+def events_of(course: EventCourse, before: SolidProximity) -> Iterator[MinimumEvent]:
     """What becomes of the minima, from the answer before the first frame on."""
     last = {
         m.key: _Live(m.distance, (m.feature_a, m.feature_b)) for m in before.minima if m.key != NONE
@@ -121,7 +121,7 @@ def events_of(course: Course, before: SolidProximity) -> Iterator[MinimumEvent]:
 
 
 def _between(
-    course: Course, k: int, last: dict[int, _Live], now: dict[int, _Live]
+    course: EventCourse, k: int, last: dict[int, _Live], now: dict[int, _Live]
 ) -> Iterator[MinimumEvent]:
     for key, was in last.items():
         if key not in now:
@@ -140,7 +140,7 @@ def _between(
 
 
 def _why_ended(
-    course: Course, k: int, last: tuple[int, _Live], now: dict[int, _Live]
+    course: EventCourse, k: int, last: tuple[int, _Live], now: dict[int, _Live]
 ) -> tuple[End, int]:
     key, was = last
     if not now:

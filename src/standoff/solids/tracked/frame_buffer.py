@@ -22,9 +22,9 @@ from standoff.kernels.entries.solid_contact import (
 from standoff.kernels.state.arrays import BAD_POSE_A
 from standoff.motion import PoseLike
 from standoff.solids.answer import SolidProximity
-from standoff.solids.tracked.asks import Asks
+from standoff.solids.tracked.asks import TrackedPair
 from standoff.solids.tracked.contact import ContactFrames, new_contact_room
-from standoff.solids.tracked.front import Frames, Front, new_room, room_for
+from standoff.solids.tracked.front import FrontFrames, KeptFront, new_room, room_for
 from standoff.solids.tracked.run import Run, status_of
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.inputs import LAST_ROW, flat_and_mark, repair
@@ -42,7 +42,7 @@ class SolidFrameBuffer:
 
     Parameters
     ----------
-    asks : Asks
+    asks : TrackedPair
         What the tracker asks whose ``step_into`` will be called.
     state : SolidState
         Where it begins; copied.
@@ -56,7 +56,7 @@ class SolidFrameBuffer:
         How many of the last frame's two poses were rounded, and replaced by the nearest rotation.
     """
 
-    def __init__(self, asks: Asks, state: SolidState) -> None:
+    def __init__(self, asks: TrackedPair, state: SolidState) -> None:
         self.asks, self._room = asks, new_room()
         self._slack = asks.a.slack + asks.b.slack
         self._a, self._b = np.zeros((2, 1, 12))
@@ -73,7 +73,7 @@ class SolidFrameBuffer:
         self._normal, self._point_a, self._point_b = views
         self._pair, self.repaired = (asks.a, asks.b), 0
         self._answer: SolidProximity | None = None
-        self._frames: Frames | None = None
+        self._frames: FrontFrames | None = None
         self._contact: ContactFrames | None = None
         self._call: tuple[Any, ...] = ()
         self._room_of_contact = new_contact_room()
@@ -162,7 +162,7 @@ class SolidFrameBuffer:
         self.upper_bound = distance + self._slack
         return distance
 
-    def _run(self, front: Front | None = None) -> Run:
+    def _run(self, front: KeptFront | None = None) -> Run:
         """The poses as a run of one frame."""
         before: Any = self._answer  # which such a run is not asked for
         state = SolidState(before, self._pair, front, self._born)
@@ -195,16 +195,16 @@ class SolidFrameBuffer:
         self.upper_bound = upper + self._slack
         return distance
 
-    def _looked_at(self, frames: Frames, before: Array) -> float:
+    def _looked_at(self, frames: FrontFrames, before: Array) -> float:
         """A frame that the kernel does not tell alone, after one with B at a pose in A's frame."""
         run = self._run()
         answer, front = run.taken_up(frames, self._told, self._inside, before)
         if front is not frames:
-            assert not isinstance(front, Frames)
+            assert not isinstance(front, FrontFrames)
             self._load(front, run.born)
         return self._tell(answer)
 
-    def _load(self, front: Front | None, born: int) -> None:
+    def _load(self, front: KeptFront | None, born: int) -> None:
         """Go on from a front; without one the next frame is a step."""
         self._front, self._born, self._frames, self._contact = front, born, None, None
         if front is None:

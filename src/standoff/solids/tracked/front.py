@@ -34,7 +34,7 @@ from standoff.kernels.solids.front_rows import (
 from standoff.kernels.solids.minima_sets import SET_BRANCH, SET_REALS
 from standoff.kernels.solids.spatial_tolerances import SAME_BASIN
 from standoff.solids.answer import MOST_OPEN
-from standoff.solids.spatial.minimum import MOST_LOCAL, Found, Sought, found_of, started
+from standoff.solids.spatial.minimum import MOST_LOCAL, LeastFound, SearchOptions, found_of, started
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.stationary import NONE, Fans
 from standoff.solids.spatial.tolerances import PROOF_ROUNDING
@@ -51,7 +51,7 @@ NO_ROWS = np.empty((0, SET_REALS))
 OUTSIDE, INSIDE = S.OUTSIDE, S.INSIDE
 
 
-class Front(NamedTuple):
+class KeptFront(NamedTuple):
     """A front between frames; its arrays are not written to.
 
     Attributes
@@ -93,7 +93,7 @@ class Front(NamedTuple):
         return "B" if self.senses[0] == INSIDE else ""
 
 
-class Work(NamedTuple):
+class FrontArrays(NamedTuple):
     """Arrays that frames write to."""
 
     store: Array
@@ -124,9 +124,9 @@ class Minima(NamedTuple):
 NO_MINIMA = Minima(0.0, 0.0, (NONE, NONE))
 
 
-def new_room() -> Work:
+def new_room() -> FrontArrays:
     """Arrays for one who keeps them from frame to frame."""
-    return Work(
+    return FrontArrays(
         np.zeros(STORE_REALS),
         np.empty(KEY_REALS * MOST_ROWS),
         np.empty(ROW_REALS * MOST_ROWS),
@@ -139,14 +139,18 @@ def new_room() -> Work:
 
 
 @lru_cache(maxsize=8)
-def _room(thread: int) -> Work:
+def _room(thread: int) -> FrontArrays:
     del thread
     return new_room()
 
 
 def front_at(
-    pair: PlacedPair, found: Found, senses: tuple[int, int], sought: Sought, born: int = 0
-) -> Front:
+    pair: PlacedPair,
+    found: LeastFound,
+    senses: tuple[int, int],
+    sought: SearchOptions,
+    born: int = 0,
+) -> KeptFront:
     """A front that is yet to be made, of solids whose nearest points were found. `born`: how many
     branches there were before."""
     away = float(np.linalg.norm(pair.relative[9:]))
@@ -156,17 +160,17 @@ def front_at(
     empty = np.empty(0)
     store = np.zeros(STORE_REALS)
     store[NEXT_BRANCH] = born
-    return Front(before, best, store, empty, empty, empty, np.array(senses, dtype=np.int64))
+    return KeptFront(before, best, store, empty, empty, empty, np.array(senses, dtype=np.int64))
 
 
-def front_in_contact(pair: PlacedPair, sought: Sought, born: int) -> Front:
+def front_in_contact(pair: PlacedPair, sought: SearchOptions, born: int) -> KeptFront:
     """A front that is yet to be made, of solids that overlap."""
     row = np.zeros(C.MINIMUM_REALS)
-    nowhere = Found(0.0, 0.0, 0.0, True, row[None], row, row[None], 0, (0, 0, 0, 0, 0), 0)
+    nowhere = LeastFound(0.0, 0.0, 0.0, True, row[None], row, row[None], 0, (0, 0, 0, 0, 0), 0)
     return front_at(pair, nowhere, (OUTSIDE, OUTSIDE), sought, born)
 
 
-class Frames:
+class FrontFrames:
     """Frames one after the other from a front on, which stays as it is.
 
     minima : rows of what the last call told of local minima, as ``kernels.solids.minima_sets`` lays
@@ -176,11 +180,11 @@ class Frames:
     def __init__(
         self,
         packed: tuple[Any, Any],
-        front: Front,
+        front: KeptFront,
         tolerance: float,
         deadline: int,
         minima: Minima = NO_MINIMA,
-        room: Work | None = None,
+        room: FrontArrays | None = None,
     ) -> None:
         self.packed, self.fans, self.done = packed, minima.fans, 1
         self.asked = np.array([tolerance, PROOF_ROUNDING, minima.above, minima.wider])
@@ -234,11 +238,11 @@ class Frames:
         total = int(told[:, N_SETS].sum())
         return self.work.sets.reshape(-1, SET_REALS)[:total].copy() if total else NO_ROWS
 
-    def kept(self) -> Front:
+    def kept(self) -> KeptFront:
         """The front after the last frame."""
         store, keys, rows, branches = self.work[:4]
         n = int(store[N_ROWS])
-        made = Front(
+        made = KeptFront(
             self.before.copy(),
             self.best.copy(),
             store.copy(),
@@ -267,7 +271,7 @@ class Frames:
         reach = SAME_BASIN * self.best[C.SIZE] + FRAMES_AHEAD * motion
         return numbers_of(self.work[:5], rows, sets, float(reach), self.done - 1)
 
-    def found(self) -> Found:
+    def found(self) -> LeastFound:
         """What the last frame found, as a search does."""
         return found_of(self.best, self.work.minima, self.work.counts)
 

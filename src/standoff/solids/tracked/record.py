@@ -65,19 +65,19 @@ def recorded(
     progress: Progress | None,
 ) -> Recording:
     """Track two solids at given times [s]; `SolidTracker.recorded_along` describes it."""
-    run = _Run(tracker, paths, times, locate)
+    run = _SolidRun(tracker, paths, times, locate)
     run.go(state, progress)
     return run.recording()
 
 
-class _Known(NamedTuple):
+class _FeaturesAtTime(NamedTuple):
     """The features of the witness points at one time, s."""
 
     time: float
     mode: Mode
 
 
-class _Run:
+class _SolidRun:
     """One run under way."""
 
     def __init__(
@@ -249,7 +249,7 @@ def _located(
     """The instants of the switches between two times [s], by halving; raises NotKnown."""
     state, asked = stretch.before(k), 0
 
-    def look(time: float, low: _Known, high: _Known) -> _Known:
+    def look(time: float, low: _FeaturesAtTime, high: _FeaturesAtTime) -> _FeaturesAtTime:
         nonlocal asked
         asked += 1
         if asked > MOST_ANSWERS:
@@ -258,9 +258,9 @@ def _located(
         answer = stretch.tracker.step(state, *poses)[1]
         if not answer.certified or answer.penetrating:
             raise NotKnown(f"no certified answer at {time} s")
-        return _Known(time, (answer.feature_a, answer.feature_b))
+        return _FeaturesAtTime(time, (answer.feature_a, answer.feature_b))
 
-    low, high = (_Known(time, mode) for time, mode in zip(span, modes, strict=True))
+    low, high = (_FeaturesAtTime(time, mode) for time, mode in zip(span, modes, strict=True))
     return changes(
         low, high, look, resolution_between(*span), lambda x, y: (y.time, x.mode, y.mode)
     )

@@ -16,14 +16,14 @@ from standoff.motion import Pose
 from standoff.recording.local_minima import LocalMinima, MinimumEvent
 from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.distance import inside_of, senses_of
-from standoff.solids.spatial.minimum import Found
+from standoff.solids.spatial.minimum import LeastFound
 from standoff.solids.spatial.pair import PlacedPair
 from standoff.solids.spatial.patches import patch_told
-from standoff.solids.spatial.told import Told, answer_of
-from standoff.solids.tracked.answers import Places, SolidAnswers, world_places
-from standoff.solids.tracked.asks import Asks, numbered
-from standoff.solids.tracked.events import Course, events_of, features_at, minima_of
-from standoff.solids.tracked.front import NO_ROWS, Frames, Front, moved_by, room_for
+from standoff.solids.spatial.told import AnswerFacts, answer_of
+from standoff.solids.tracked.answers import SolidAnswers, WitnessPlaces, world_places
+from standoff.solids.tracked.asks import TrackedPair, numbered
+from standoff.solids.tracked.events import EventCourse, events_of, features_at, minima_of
+from standoff.solids.tracked.front import NO_ROWS, FrontFrames, KeptFront, moved_by, room_for
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.derivatives import Smoothness
 from standoff.tracking.status import Status
@@ -33,7 +33,7 @@ from standoff.typing import Array
 class Run:
     """Frames with A and B at world poses (n, 12), from the state of the frame before on."""
 
-    def __init__(self, asks: Asks, state: SolidState, a: Array, b: Array) -> None:
+    def __init__(self, asks: TrackedPair, state: SolidState, a: Array, b: Array) -> None:
         self.asks, self.state, self.born = asks, state, state.born
         self.a, self.b = a, b
         self.relative = _relative(a, b)
@@ -74,7 +74,7 @@ class Run:
         answer = self.state.proximity if k < 0 else self.special.get(k)
         return answer is not None and answer.overlap is not None
 
-    def _state(self, answer: SolidProximity, front: Front | None) -> SolidState:
+    def _state(self, answer: SolidProximity, front: KeptFront | None) -> SolidState:
         born = self.born if front is None else front.born
         return SolidState(answer, (self.asks.a, self.asks.b), front, born)
 
@@ -97,7 +97,7 @@ class Run:
         later = self._made, self.minima_told, self.places_told
         return SolidAnswers(self.told, places, self.special, plain, *later)
 
-    def places_told(self) -> Places:
+    def places_told(self) -> WitnessPlaces:
         """The features and parameters of the witness points of all frames."""
         at = self.told[:, T.LEAVES : T.PARAMETERS + 4].copy()
         rows, first = self._all_minima()
@@ -117,7 +117,7 @@ class Run:
                 parameters[k, : len(given)] = given
             found.append(features)
             values.append(parameters)
-        return Places(*found, *values)
+        return WitnessPlaces(*found, *values)
 
     def minima_told(self) -> tuple[LocalMinima, tuple[MinimumEvent, ...]]:
         """The local minima of all frames, and what becomes of them.
@@ -134,10 +134,10 @@ class Run:
             )
         solids = self.asks.a, self.asks.b
         told = minima_of(solids, *self._all_minima(), self.special, self.a)
-        course = Course(told, self.told[:, T.MOTION], length, self.merged)
+        course = EventCourse(told, self.told[:, T.MOTION], length, self.merged)
         return told, tuple(events_of(course, self.state.proximity))
 
-    def _through(self) -> Front | None:
+    def _through(self) -> KeptFront | None:
         """All frames; the front after the last."""
         front, at = self.state.front, 0
         while at < len(self.relative):
@@ -148,8 +148,8 @@ class Run:
         return front
 
     def _meet(
-        self, front: Front | None, at: int, motion: float = np.nan
-    ) -> tuple[Front | None, int]:
+        self, front: KeptFront | None, at: int, motion: float = np.nan
+    ) -> tuple[KeptFront | None, int]:
         """A frame in which the solids may overlap, after a motion, length, and those after it if
         they do not; the front after them."""
         pair, in_contact = self.pair(at), front is not None and front.contact is not None
@@ -171,7 +171,7 @@ class Run:
         self.told[at, T.MOTION] = motion  # and not since they were apart
         return front, after
 
-    def _gone(self, front: Front, at: int) -> tuple[Front | None, int]:
+    def _gone(self, front: KeptFront, at: int) -> tuple[KeptFront | None, int]:
         """Frames from a front on, as far as they are answered by it; the front after them."""
         frames = self.asks.frames(front)
         while at < len(self.relative):
@@ -181,7 +181,7 @@ class Run:
                 return self._meet(frames.kept(), at - 1, float(self.told[at - 1, T.MOTION]))
         return frames.kept(), at
 
-    def _taken(self, frames: Frames, first: int, end: int, inside: str) -> bool:
+    def _taken(self, frames: FrontFrames, first: int, end: int, inside: str) -> bool:
         """Take what the kernel told of frames first .. end - 1: is the last one answered?"""
         self.minima.append(frames.minima)
         self.inside[first:end] = inside
@@ -193,14 +193,14 @@ class Run:
         return settled
 
     def taken_up(
-        self, frames: Frames, told: Array, inside: str, before: Array
-    ) -> tuple[SolidProximity, Frames | Front | None]:
+        self, frames: FrontFrames, told: Array, inside: str, before: Array
+    ) -> tuple[SolidProximity, FrontFrames | KeptFront | None]:
         """The answer of a run of one frame, whose row the kernel has told, after one in which the
         solids were apart with B at the pose `before` (12,) in A's frame; and what the next one goes
         on from, `frames` themselves where they go on."""
         self._before = before
         self.told[:], frames.minima = told, frames.told(told)
-        after: Frames | Front | None = frames
+        after: FrontFrames | KeptFront | None = frames
         if not self._taken(frames, 0, 1, inside):
             self.born = frames.born
             after, _ = self._meet(frames.kept(), 0, float(self.told[0, T.MOTION]))
@@ -217,7 +217,7 @@ class Run:
         poses = (_checked(row) for row in (self.a[k], self.b[k]))
         return PlacedPair(self.asks.a, self.asks.b, *poses)
 
-    def _ask(self, k: int) -> Front | None:
+    def _ask(self, k: int) -> KeptFront | None:
         """A frame from nothing."""
         self.special[k], front = self.asks.cold(self.pair(k), self.born)
         if front is not None:
@@ -225,7 +225,7 @@ class Run:
         self.told[k, T.MOTION], self.told[k, T.ANEW] = np.nan, 0.0
         return front
 
-    def _settled(self, k: int, frames: Frames, inside: Any) -> bool:
+    def _settled(self, k: int, frames: FrontFrames, inside: Any) -> bool:
         """Is a frame answered, the last that was done? False: it is to be asked from nothing."""
         row = self.told[k]
         if row[T.ENDED] == T.TO_ASK:
@@ -247,7 +247,7 @@ class Run:
         minima = self._minima_of(k)
         senses, rows = senses_of(inside), list(minima[:, :POINTS]) or [found.best]
         patches = [patch_told(pair, each) for each in minima] if self.asks.options.patch else []
-        told = Told(status_of(inside), Smoothness.SMOOTH, inside=inside, patches=patches)
+        told = AnswerFacts(status_of(inside), Smoothness.SMOOTH, inside=inside, patches=patches)
         places = [pair.place(each, senses) for each in rows]
         answer = answer_of(pair, found, places, told)
         if len(minima):
@@ -278,10 +278,10 @@ def _counted(answer: SolidProximity, row: Array) -> SolidProximity:
     return replace(answer, counts=answer.counts._replace(evaluations=taken, rebuilds=rebuilds))
 
 
-def _found(row: Array, tolerance: float) -> Found:
+def _found(row: Array, tolerance: float) -> LeastFound:
     best = np.array([row[T.DISTANCE], *row[T.LEAVES : T.LEAVES + 2],
                      *row[T.PARAMETERS : T.PARAMETERS + 4], 0.0])  # fmt: skip
-    return Found(
+    return LeastFound(
         float(row[T.DISTANCE]), float(row[T.BOUND]), tolerance, False, best[None], best,
         np.empty((0, 11)), 0, (0, 0, 0, 0, 0), 0,
     )  # fmt: skip

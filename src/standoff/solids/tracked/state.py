@@ -6,7 +6,7 @@ from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
 from standoff.solids.spatial.solid_model import SolidModel
-from standoff.solids.tracked.front import Front
+from standoff.solids.tracked.front import KeptFront
 
 
 @hides("front")
@@ -29,7 +29,7 @@ class SolidState(KeepsReadOnly):
         self,
         proximity: SolidProximity,
         pair: tuple[SolidModel, SolidModel],
-        front: Front | None,
+        front: KeptFront | None,
         born: int = 0,
     ) -> None:
         self.proximity, self._pair, self.front, self.born = proximity, pair, front, born

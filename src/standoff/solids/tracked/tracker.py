@@ -15,7 +15,7 @@ from standoff.motion.vectors import pose_row
 from standoff.read_only import KeepsReadOnly
 from standoff.shown_names import hides
 from standoff.solids.answer import SolidProximity
-from standoff.solids.asked import DEADLINE, PATCH_ALONE, Asked
+from standoff.solids.asked import DEADLINE, PATCH_ALONE, QueryOptions
 from standoff.solids.spatial.bare_point import BarePoint
 from standoff.solids.spatial.models import as_model
 from standoff.solids.spatial.pair import PlacedPair
@@ -24,9 +24,9 @@ from standoff.solids.spatial.solid_model import SolidModel
 from standoff.solids.spatial.stationary import fans_of
 from standoff.solids.spatial.tolerances import NEAREST_ALONE
 from standoff.solids.tracked.answers import SolidAnswers
-from standoff.solids.tracked.asks import Asks
+from standoff.solids.tracked.asks import TrackedPair
 from standoff.solids.tracked.frame_buffer import SolidFrameBuffer
-from standoff.solids.tracked.front import Frames, Front
+from standoff.solids.tracked.front import FrontFrames, KeptFront
 from standoff.solids.tracked.run import Run
 from standoff.solids.tracked.state import SolidState
 from standoff.tracking.pose_arrays import flat_poses, mended, read_poses
@@ -90,8 +90,8 @@ class SolidTracker(KeepsReadOnly):
         self.patch = None if patch is None else positive(patch, "patch")
         if self.patch is not None and self.minima is None:
             raise StandoffError(PATCH_ALONE.format(patch=shown(patch)), "patch", patch)
-        asked = Asked(None, self.tolerance, self.minima, self.deadline, self.patch)
-        self._asks = Asks(self.a, self.b, asked)
+        asked = QueryOptions(None, self.tolerance, self.minima, self.deadline, self.patch)
+        self._asks = TrackedPair(self.a, self.b, asked)
         prepare_tracked_solids()
 
     def start(self, pose_a: PoseLike, pose_b: PoseLike) -> SolidState:
@@ -246,12 +246,12 @@ class SolidTracker(KeepsReadOnly):
         """The answer of a state as arrays, with the poses (1, 4, 4) that it is of."""
         return Run(self._asks, state, flat_poses(poses_a), flat_poses(poses_b)).of_state()
 
-    def frames(self, front: Front) -> Frames:
+    def frames(self, front: KeptFront) -> FrontFrames:
         """Frames from a front on, with what this tracker asks."""
         return self._asks.frames(front)
 
     @property
-    def asks(self) -> Asks:
+    def asks(self) -> TrackedPair:
         """What each frame is asked."""
         return self._asks
 

@@ -14,7 +14,7 @@ from standoff.sweep.proof.summary import Kind
 from standoff.typing import Array, Ints
 
 
-class Looked(NamedTuple):
+class CellFindings(NamedTuple):
     """What was found of n cells.
 
     Attributes
@@ -42,7 +42,7 @@ class Looked(NamedTuple):
     known: Array
 
 
-class Told(NamedTuple):
+class QueryFindings(NamedTuple):
     """What some queries told of their cells.
 
     Attributes
@@ -104,10 +104,10 @@ class ParameterBox(ABC):
         """Return how far points can move in cells (n,), and by each parameter (n, columns)."""
 
     @abstractmethod
-    def look(self, cells: Cells) -> Looked:
+    def look(self, cells: Cells) -> CellFindings:
         """Decide of each cell. What is decided depends on that cell alone."""
 
-    def decided(self, cells: Cells, moved: Array, told: Told, asked: Ints) -> Looked:
+    def decided(self, cells: Cells, moved: Array, told: QueryFindings, asked: Ints) -> CellFindings:
         """Return what is decided by what was told of all cells; `asked` counts queries and those
         that are not proven."""
         missed = ~(told.distance >= self.clearance)
@@ -120,4 +120,6 @@ class ParameterBox(ABC):
         kind[told.lower >= self.clearance] = Kind.PROVEN
         queries, uncertified = asked.tolist()
         along = given.argmax(axis=1)
-        return Looked(kind, along, told.lower, told.distance, queries, uncertified, cells.known)
+        return CellFindings(
+            kind, along, told.lower, told.distance, queries, uncertified, cells.known
+        )

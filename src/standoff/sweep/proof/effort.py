@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 
 MOST_SHARDS = 1 << 20
 
@@ -28,7 +28,7 @@ class Effort(NamedTuple):
     shards: int = 64
 
 
-def effort_of(top: Table) -> Effort:
+def effort_of(top: SceneTable) -> Effort:
     """Return what a job's table ``[prove]`` says.
 
     Raises SceneError: what it says cannot be.

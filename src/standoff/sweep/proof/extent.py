@@ -7,7 +7,7 @@ import numpy as np
 
 from standoff.bodies import shapes
 from standoff.bodies.body import Body
-from standoff.impact.moment import Box
+from standoff.impact.moment import BodyBox
 from standoff.kernels.body import layout as L
 from standoff.tracking.many_distances import answered_rows
 from standoff.typing import Array
@@ -64,7 +64,7 @@ def supports(body: Body, directions: Array) -> Array:
 def _reach(body: Body) -> tuple[float, float]:
     """The distance of the farthest corner of a body's box from the origin, and of walls that are
     off it; both 0 of a point there."""
-    box = Box(body)
+    box = BodyBox(body)
     corner = float(np.linalg.norm(np.abs(box.middle) + box.half))
     return corner, 2.0 * (corner + box.radius)
 

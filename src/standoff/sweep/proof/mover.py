@@ -20,7 +20,7 @@ import numpy as np
 
 from standoff.bodies.body import Body
 from standoff.errors import StandoffError
-from standoff.impact.moment import Box
+from standoff.impact.moment import BodyBox
 from standoff.kernels.body import layout as L
 from standoff.motion import Pose
 from standoff.scene.shapes import SAME_SIZE
@@ -84,7 +84,7 @@ class Mover:
         self.shifts = [(k, SHIFTS.index(p.what)) for k, p in own if p.what in SHIFTS]
         self.turns = [(k, TURNS.index(p.what)) for k, p in own if p.what in TURNS]
         self.home = self.home_pose.rotation
-        self.box = Box(self.body)
+        self.box = BodyBox(self.body)
         self.radius = float(self.body.reals[L.RADIUS])
         self.far = farthest(self.body) if self.turns else 0.0
 

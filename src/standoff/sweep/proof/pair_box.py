@@ -27,7 +27,7 @@ import numpy as np
 from standoff.kernels.state import arrays as K
 from standoff.sweep.parameters import Parameter, in_ranges
 from standoff.sweep.parameters import moved as moved_poses
-from standoff.sweep.proof.box import Looked, ParameterBox, Told
+from standoff.sweep.proof.box import CellFindings, ParameterBox, QueryFindings
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.mover import EPS, TOGETHER, Mover, PlacedBody
 from standoff.sweep.proof.tolerances import (
@@ -42,7 +42,7 @@ from standoff.tracking.many_distances import fit_poses
 from standoff.typing import Array, Ints
 
 
-class Asked(AnswerArrays):
+class RowAnswers(AnswerArrays):
     """The answers of some rows, each of its own bodies.
 
     Attributes
@@ -123,11 +123,11 @@ class PairBox(ParameterBox):
         grown = half * self.rates
         return whole + grown.sum(axis=1), ways + grown
 
-    def look(self, cells: Cells) -> Looked:
+    def look(self, cells: Cells) -> CellFindings:
         told, moved, asked = self.told(cells)
         return self.decided(cells, moved, told, asked)
 
-    def told(self, cells: Cells) -> tuple[Told, Array, Ints]:
+    def told(self, cells: Cells) -> tuple[QueryFindings, Array, Ints]:
         """Return what is told of cells, by a query in the middle where no ball is enough; how far
         points move in them; and the number of queries, and of those that are not proven."""
         n = len(cells.place)
@@ -135,7 +135,7 @@ class PairBox(ParameterBox):
         numbers = self.numbers(cells)
         poses = self.poses(numbers)
         lower = self.by_balls(poses, self.moved(self.half(cells))[0])
-        told = Told(lower, np.full(n, np.inf), np.full(n, np.inf), ways.copy(), ways)
+        told = QueryFindings(lower, np.full(n, np.inf), np.full(n, np.inf), ways.copy(), ways)
         ask = np.flatnonzero(~(lower >= self.clearance))
         asked = np.zeros(2, dtype=np.int64)
         if len(ask):
@@ -158,13 +158,15 @@ class PairBox(ParameterBox):
         )
         return a, b
 
-    def answered(self, numbers: Array, poses: tuple[Array, Array]) -> Asked:
+    def answered(self, numbers: Array, poses: tuple[Array, Array]) -> RowAnswers:
         """Return the answers of rows, each with its own bodies."""
         own = self.movers[0].body, self.movers[1].body
         poses = fit_poses(*own, poses)
-        return Asked(*answered_shapes(own, self.shaped, numbers, poses, None), poses)
+        return RowAnswers(*answered_shapes(own, self.shaped, numbers, poses, None), poses)
 
-    def by_smallest(self, cells: Cells, found: Asked, told: Told) -> tuple[Told, Ints]:
+    def by_smallest(
+        self, cells: Cells, found: RowAnswers, told: QueryFindings
+    ) -> tuple[QueryFindings, Ints]:
         """Return what is told with bounds from above that hold for all shapes in the cells; and the
         number of queries, and of those that are not proven."""
         whole, _ = self.moved(self.half(cells))
@@ -206,7 +208,7 @@ class PairBox(ParameterBox):
         apart: Array = np.sqrt(np.sum(between * between, axis=1)) - moved
         return apart - sum(mover.box.reach + mover.radius for mover in self.movers)
 
-    def bounds(self, cells: Cells, found: Distances | Asked) -> Told:
+    def bounds(self, cells: Cells, found: Distances | RowAnswers) -> QueryFindings:
         """Return what the distances in the middles of cells prove of the cells; where shapes
         change, `upper` is of the bodies that were asked."""
         half = self.half(cells)
@@ -233,7 +235,7 @@ class PairBox(ParameterBox):
         ways[~known] = moved[~known]
         lower = found.lower_bound - np.where(known, taken, whole)
         upper = found.upper_bound + whole
-        return Told(
+        return QueryFindings(
             np.where(np.isnan(lower), -np.inf, lower),
             np.where(np.isnan(upper), np.inf, upper),
             np.where(np.isnan(found.upper_bound), np.inf, found.upper_bound),

@@ -14,11 +14,11 @@ from standoff.checks.real_numbers import shown
 from standoff.errors import StandoffError, StandoffTypeError
 from standoff.motion import Pose
 from standoff.robots.limits import check_limits
-from standoff.robots.motions import Frames
-from standoff.robots.sight import Apart, Middle, Sight, closing, gains, some_of
+from standoff.robots.motions import LinkFrames
+from standoff.robots.sight import Middle, Separations, Sight, closing, gains, some_of
 from standoff.sweep.job import Job, check_job
 from standoff.sweep.parameters import UNIFORM, Parameter
-from standoff.sweep.proof.box import Looked, ParameterBox, Told
+from standoff.sweep.proof.box import CellFindings, ParameterBox, QueryFindings
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.mover import PlacedBody
 from standoff.sweep.proof.pair_box import PairBox
@@ -28,12 +28,12 @@ from standoff.sweep.proof.tolerances import FINEST_SHARE
 from standoff.sweep.subjects.pair import ConvexPair
 from standoff.sweep.subjects.robot import RobotSubject
 from standoff.sweep.subjects.world import SceneWorld
-from standoff.sweep.work import Token, Work
+from standoff.sweep.work import ShardWork, Token
 from standoff.typing import Array, Bools, Ints
 from standoff.world.pieces import PieceUnion
 
 
-class Proof(Work):
+class Proof(ShardWork):
     """That the bodies of a job keep a clearance at all parameters in their ranges.
 
     Raises TypeError, ValueError: no job, or a clearance that is no length, or is negative;
@@ -225,7 +225,7 @@ class RobotBox(ParameterBox):
     def pairs(self) -> int:
         return self.sight.pairs
 
-    def _seen(self, cells: Cells) -> tuple[Array, Frames, Ints, Ints, Middle]:
+    def _seen(self, cells: Cells) -> tuple[Array, LinkFrames, Ints, Ints, Middle]:
         """Configurations in the middles with their frames; of each pair that is left in a cell, the
         cell, the pair, and how far it can move."""
         q = self.subject.configurations(self.parameters, self.numbers(cells))
@@ -241,7 +241,7 @@ class RobotBox(ParameterBox):
         np.maximum.at(ways, at, self._gains(middle, self.sight.by_boxes(pairs, frames, at, middle)))
         return whole, ways
 
-    def look(self, cells: Cells) -> Looked:
+    def look(self, cells: Cells) -> CellFindings:
         n = len(cells.place)
         q, frames, at, pairs, middle = self._seen(cells)
         boxed = self.sight.by_boxes(pairs, frames, at, middle)
@@ -264,19 +264,21 @@ class RobotBox(ParameterBox):
         ways = np.zeros((n, len(self.parameters)))
         # along what gives back most of the pair that stands in the way most
         worst = np.flatnonzero(open_ & (known[at, pairs] == lower[at]))
-        ways[at[worst]] = self._gains(some_of(middle, worst), Apart._make(x[worst] for x in best))
+        ways[at[worst]] = self._gains(
+            some_of(middle, worst), Separations._make(x[worst] for x in best)
+        )
         # and where the middle is too near, of the pair that is nearest there
         steps = ways.copy()
         nearest = np.flatnonzero(apart.upper + self.doubt == distance[at[ask]])
         steps[at[ask[nearest]]] = self._gains(some_of(some, nearest), None)
-        told = Told(lower, upper, distance, ways, steps)
+        told = QueryFindings(lower, upper, distance, ways, steps)
         uncertified = int(np.count_nonzero(~np.isfinite(apart.lower)))
         asked = np.array([len(ask), uncertified])
         return self.decided(cells, moved, told, asked)._replace(known=known)
 
     def _asked(
-        self, worth: Bools, pairs: Ints, q: Array, frames: Frames, at: Ints, boxed: Apart
-    ) -> tuple[Ints, Apart]:
+        self, worth: Bools, pairs: Ints, q: Array, frames: LinkFrames, at: Ints, boxed: Separations
+    ) -> tuple[Ints, Separations]:
         """Which pairs are asked, and what they answer: those that are worth it, and in a cell whose
         middle is too near, all that may be nearer still."""
         ask = np.flatnonzero(worth)
@@ -289,9 +291,9 @@ class RobotBox(ParameterBox):
             return ask, apart
         rest = self.sight.ask(pairs[more], q, frames, at[more])
         both = (np.concatenate(each) for each in zip(apart, rest, strict=True))
-        return np.concatenate([ask, more]), Apart._make(both)
+        return np.concatenate([ask, more]), Separations._make(both)
 
-    def _worth(self, pairs: Ints, middle: Middle, boxed: Apart, bound: Array) -> Bools:
+    def _worth(self, pairs: Ints, middle: Middle, boxed: Separations, bound: Array) -> Bools:
         """Is a pair asked? Not where its boxes prove it, nor where a query would hardly prove
         anything: as far as can be seen the middle is too near for that, and surely too far for a
         violation of the whole cell."""
@@ -311,7 +313,7 @@ class RobotBox(ParameterBox):
         found: Bools = (bound - self.clearance < self.doubt) & ~hopeless
         return found
 
-    def _gains(self, middle: Middle, apart: Apart | None) -> Array:
+    def _gains(self, middle: Middle, apart: Separations | None) -> Array:
         """What halving each parameter gives back of what its pairs can move (k, columns)."""
         chain = middle.reaches.chain
         numbers = np.where(chain >= 0, np.append(self.columns, -1)[chain], -1)
@@ -353,7 +355,7 @@ class WorldBox(ParameterBox):
             [ways for _, ways in told], axis=0
         )
 
-    def look(self, cells: Cells) -> Looked:
+    def look(self, cells: Cells) -> CellFindings:
         n, columns = len(cells.place), len(self.parameters)
         upper, distance, moved = np.full(n, np.inf), np.full(n, np.inf), np.zeros(n)
         known, asked = cells.known.copy(), np.zeros(2, dtype=np.int64)
@@ -379,7 +381,7 @@ class WorldBox(ParameterBox):
                 least[left[first]] = values[first]
                 found[left[first]] = given[first]
         lower = known.min(axis=1)
-        told = Told(lower, upper, distance, ways, steps)
+        told = QueryFindings(lower, upper, distance, ways, steps)
         return self.decided(cells, moved, told, asked)._replace(known=known)
 
 

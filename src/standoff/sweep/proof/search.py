@@ -16,7 +16,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from standoff.sweep.proof.box import Looked, ParameterBox
+from standoff.sweep.proof.box import CellFindings, ParameterBox
 from standoff.sweep.proof.cells import Cells
 from standoff.sweep.proof.summary import Kind, Places, ProofSummary
 from standoff.typing import Ints
@@ -87,7 +87,7 @@ class _Search:
             rest.append(some.halved(looked.along[left]))
         return Cells.together([*rest, cells.at(slice(start, None))])
 
-    def _count(self, cells: Cells, looked: Looked) -> None:
+    def _count(self, cells: Cells, looked: CellFindings) -> None:
         found = self.found
         found.queries += looked.queries
         found.uncertified += looked.uncertified
@@ -103,7 +103,7 @@ class _Search:
             least = nearest[[int(looked.distance[nearest].argmin())]]
             found.nearest.add(self._places(cells, looked, least))
 
-    def _places(self, cells: Cells, looked: Looked, which: Ints) -> Places:
+    def _places(self, cells: Cells, looked: CellFindings, which: Ints) -> Places:
         some = cells.at(which)
         half = some.halves * self.box.width
         return Places(self.box.numbers(some), half, looked.distance[which], looked.lower[which])
@@ -114,7 +114,9 @@ class _Search:
         if not n:
             return
         none, unknown = np.zeros(n, dtype=np.int64), np.full(n, -np.inf)
-        looked = Looked(none + Kind.OPEN, none, unknown, np.full(n, np.nan), 0, 0, cells.known)
+        looked = CellFindings(
+            none + Kind.OPEN, none, unknown, np.full(n, np.nan), 0, 0, cells.known
+        )
         self.found.close(cells.levels, Kind.OPEN, unknown)
         self.found.open.add(self._places(cells, looked, np.arange(n)))
         if self.record is not None:

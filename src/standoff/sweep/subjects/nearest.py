@@ -20,7 +20,7 @@ from standoff.world.pieces import PieceUnion
 from standoff.world.solid_answer import SolidPairAnswer
 
 
-class Row(NamedTuple):
+class NearestRow(NamedTuple):
     """One row's numbers, as `Rows` has them."""
 
     distance: float
@@ -35,7 +35,7 @@ def signed(answer: WorldAnswer) -> Array:
     return np.asarray(np.where(pairs.inside, -pairs.distance, pairs.distance))
 
 
-def row_of(answer: WorldAnswer) -> Row:
+def row_of(answer: WorldAnswer) -> NearestRow:
     """Return what is kept of a world's answer.
 
     The status is that of the nearest pair; where another pair that may be nearer still is not
@@ -43,7 +43,7 @@ def row_of(answer: WorldAnswer) -> Row:
     """
     pairs, distance = answer.pairs, signed(answer)
     if not len(distance):
-        return Row(np.nan, answer.clearance, Status.FAR.value, NO_PAIR)
+        return NearestRow(np.nan, answer.clearance, Status.FAR.value, NO_PAIR)
     nearest = int(np.argmin(distance))
     told = np.array([status.value for status in pairs.status])
     bounds = pairs.lower_bound
@@ -53,13 +53,13 @@ def row_of(answer: WorldAnswer) -> Row:
         which = int(open_[np.argmin(bounds[open_])])
     i, j = pairs.bodies[nearest].tolist()
     number = i * len(answer.model.listed) + j
-    return Row(float(distance[nearest]), answer.clearance, int(told[which]), number)
+    return NearestRow(float(distance[nearest]), answer.clearance, int(told[which]), number)
 
 
 def rows_of(answers: Iterable[WorldAnswer], first: int) -> Rows:
     """Return rows from `first` on, of an answer each."""
     found = [row_of(answer) for answer in answers]
-    distance, bound, status, pair = np.array(found).reshape(-1, len(Row._fields)).T
+    distance, bound, status, pair = np.array(found).reshape(-1, len(NearestRow._fields)).T
     numbers = np.arange(first, first + len(found))
     return Rows(numbers, distance, bound, status.astype(np.int64), pair.astype(np.int64))
 

@@ -14,7 +14,7 @@ from standoff.checks.numbers import magnitude_or_zero
 from standoff.errors import StandoffError
 from standoff.kernels.state import arrays as K
 from standoff.scene.errors import SceneError
-from standoff.scene.reader import Table
+from standoff.scene.reader import SceneTable
 from standoff.scene.shapes import NUMBERS, SHAPES, read_body, swept_keys
 from standoff.sweep.parameters import Parameter, columns_of
 from standoff.tracking.many_distances import rows_at_made_poses
@@ -45,7 +45,7 @@ class ShapeNumber(NamedTuple):
         return cls(key, int(entry) - 1 if entry else -1)
 
 
-def shape_numbers(table: Table) -> list[str]:
+def shape_numbers(table: SceneTable) -> list[str]:
     """Return what of a body's table can change, as `what` names it."""
     shape = table.text("shape")
     keys = [key for key in (*SHAPES[shape].keys, "rounding") if key in NUMBERS]
@@ -61,7 +61,7 @@ def shape_numbers(table: Table) -> list[str]:
     ]
 
 
-def _is_list(table: Table, key: str) -> bool:
+def _is_list(table: SceneTable, key: str) -> bool:
     return isinstance(table.required(key, ""), list)
 
 
@@ -72,7 +72,7 @@ class ShapedBody:
     ----------
     name : str
         Of the body in the scene.
-    table : Table
+    table : SceneTable
         The scene's ``[bodies.NAME]``.
     parameters : sequence of Parameter
         All of the job; those of this body's shape are its own.
@@ -86,7 +86,7 @@ class ShapedBody:
         The scene's word for its kind.
     """
 
-    def __init__(self, name: str, table: Table, parameters: Sequence[Parameter]) -> None:
+    def __init__(self, name: str, table: SceneTable, parameters: Sequence[Parameter]) -> None:
         self.name, self.table = name, table
         self.shape = table.text("shape")
         own = [(at, p) for at, p in columns_of(parameters) if p.shape and p.moves == name]

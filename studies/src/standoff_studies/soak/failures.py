@@ -13,7 +13,7 @@ from standoff.checks.numbers import whole_number
 from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import ROTATION
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.tracker import Tracker
 from standoff.typing import Array
 from standoff.version import __version__
@@ -143,7 +143,7 @@ def _ready(case: Case) -> tuple[Made, Made, Frames, Tracker]:
 
 def _step(tracker: Tracker, one: Frames, has_twist: bool, state: Array, row: Array) -> int:
     """Answer one frame; return FINE, or what was rejected."""
-    block = Block.empty(state, one.motions[0], float(one.steps[0]), has_twist)
+    block = FrameBlock.empty(state, one.motions[0], float(one.steps[0]), has_twist)
     done = int(kernels.step(tracker.table.address, block.data))
     state[:], row[:] = block.state, block.out
     return done

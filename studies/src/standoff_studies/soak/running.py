@@ -11,7 +11,7 @@ from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.pair import events as N
 from standoff.kernels.state import arrays as K
 from standoff.tracking import calls
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.laws import PaperLaw
 from standoff.tracking.status import Status
 from standoff.tracking.tracker import Tracker
@@ -116,7 +116,7 @@ def start(
 ) -> int:
     """Answer frame k from a global start, into `state` and `row`; return FINE, or what was
     rejected."""
-    block = Block.empty(state, frames.part(slice(k, k + 1)).motions[0], 0.0, has_twist)
+    block = FrameBlock.empty(state, frames.part(slice(k, k + 1)).motions[0], 0.0, has_twist)
     done = int(kernels.start(tracker.table.address, block.data, K.START_ANYWHERE))
     state[:], row[:] = block.state, block.out
     return done

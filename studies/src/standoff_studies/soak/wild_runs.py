@@ -17,7 +17,7 @@ from standoff.kernels.entries import tracker as kernels
 from standoff.kernels.state import arrays as K
 from standoff.kernels.tolerances import BLUR, START_GAP
 from standoff.tracking import calls
-from standoff.tracking.block import Block
+from standoff.tracking.block import FrameBlock
 from standoff.tracking.law_options import Law
 from standoff.tracking.laws import OptionsConflict, PaperLaw, law_of_facts
 from standoff.tracking.status import Status
@@ -154,7 +154,7 @@ def run(rng: Rng, scenes: list[Scene]) -> Run:
         state[K.Q : K.Q + 4] = place[[2, 3, 6, 7]]
     begun = state[K.MODE : K.MODE + 8].tolist()
     motions, table = frames.motions, tracker.table
-    block = Block.empty(state, motions[0], 0.0, twists)
+    block = FrameBlock.empty(state, motions[0], 0.0, twists)
     kernels.start(table.address, block.data, given)
     rows[0] = block.out
     rows[1:] = calls.run(table, motions[1:], twists, frames.steps[1:], block.state.copy()).rows

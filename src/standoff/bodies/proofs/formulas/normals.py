@@ -8,7 +8,12 @@ import numpy as np
 import scipy
 
 from standoff.bodies.proofs.formulas.forms import curvature_forms
-from standoff.bodies.proofs.formulas.signs import FIRST_GRID, Bounds, sign_of_product, widest
+from standoff.bodies.proofs.formulas.signs import (
+    FIRST_GRID,
+    ExpressionBounds,
+    sign_of_product,
+    widest,
+)
 from standoff.bodies.proofs.formulas.taylor import TaylorBounds, normal
 from standoff.bodies.proofs.tolerances import FEW_OPERATIONS, LEAST_COSINE, SMALLEST_SIGN_BOX
 from standoff.geometry.boxes import Boxes, grid
@@ -50,11 +55,11 @@ def _along_sides(domain: tuple[float, ...]) -> Boxes:
 
 
 @lru_cache(maxsize=256)
-def _normal_bounds(formula: Formula, domain: tuple[float, ...]) -> Bounds | TaylorBounds:
+def _normal_bounds(formula: Formula, domain: tuple[float, ...]) -> ExpressionBounds | TaylorBounds:
     """By the exact forms, free of factors that vanish at a collapsed side, or by Taylor series."""
     forms = curvature_forms(formula)
     if forms.exact:
-        return Bounds(list(forms.normal), formula.variables)
+        return ExpressionBounds(list(forms.normal), formula.variables)
     return TaylorBounds(formula, domain, normal)
 
 
@@ -84,7 +89,9 @@ def centre_of_normals(normals: Array) -> Array | None:
     return np.asarray(axis)
 
 
-def _all_on_one_side(bounds: Bounds | TaylorBounds, domain: tuple[float, ...], axis: Array) -> bool:
+def _all_on_one_side(
+    bounds: ExpressionBounds | TaylorBounds, domain: tuple[float, ...], axis: Array
+) -> bool:
     size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
     boxes = grid(domain, FIRST_GRID)
     evaluated = 0

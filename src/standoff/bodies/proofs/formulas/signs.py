@@ -21,7 +21,7 @@ CHUNK = 1024
 MOST_BOXES = 16_384
 
 
-class Bounds:
+class ExpressionBounds:
     """k expressions over boxes, sharpened by their slopes."""
 
     def __init__(self, expressions: Sequence[Any], variables: tuple[str, ...]) -> None:
@@ -81,7 +81,7 @@ def proven_sign(expression: Any, variables: tuple[str, ...], domain: Sequence[fl
     """+1 (or -1): nowhere below (above) zero; 0: not proven."""
     if expression.is_number:
         return int(sympy_module().sign(expression.evalf()))  # float64 may not hold it
-    bounds = Bounds([expression], variables)
+    bounds = ExpressionBounds([expression], variables)
     size = np.diff(np.reshape(domain, (-1, 2)), axis=1).ravel()
     boxes = grid(domain, FIRST_GRID)
     middle = bounds(boxes)[1]
