@@ -29,7 +29,7 @@ from standoff.solids.spatial.pair import NearestPlace, PlacedPair
 from standoff.solids.spatial.patches import patch_told
 from standoff.solids.spatial.told import AnswerFacts, answer_of
 from standoff.solids.spatial.tolerances import (
-    BESIDE,
+    BALL_STEPS,
     CONTACT_REACH,
     HELD_WAY,
     PARTED_SPARE,
@@ -106,7 +106,7 @@ def closed(
         ends = np.array([place.point_a, place.point_b, 0.5 * (place.point_a + place.point_b)])
         ball = common_ball(pair, ends[:1], sought.tolerance, sought.deadline)
         if not ball and overlap.radius == 0.0:
-            steps = [part * abs(place.distance) for part in BESIDE]
+            steps = [part * abs(place.distance) for part in BALL_STEPS]
             ball = ball_beside(pair, ends, sought.tolerance, sought.deadline, steps)
         if ball:
             larger = ball if ball.radius > overlap.radius else overlap

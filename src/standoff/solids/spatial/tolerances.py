@@ -49,7 +49,7 @@ HELD_WAY: Final = 2.0
 LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 """Of the size: steps from a common point of both boundaries among which one inside both is
 sought."""
-BESIDE: Final = (1.0, 0.3, 0.1)
+BALL_STEPS: Final = (1.0, 0.3, 0.1)
 """Of a place's depth: the same from its points, where no larger ball was found."""
 SAME_SPOT: Final = 1e-5
 """Of the size: nearest points of one solid nearer to each other than this are one."""
