@@ -62,7 +62,7 @@ class SolidTracker(KeepsReadOnly):
         Most evaluations of a frame. What is then open stays an interval, with the status DEADLINE,
         and the next frame goes on from there.
     minima : float, optional
-        All local minima of the distance below this one are kept in each frame, length.
+        Local minima below this length are kept in each frame; after a leap one may be missing.
     patch : float, optional
         Of each of them up to four pairs of points, as of ``so.solids.distance``.
     """
