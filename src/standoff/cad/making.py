@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -39,7 +39,7 @@ from standoff.cad.measures import (
 from standoff.cad.miss_bounds import miss_bound, side_miss
 from standoff.cad.opencascade import cast, caught_lines, explored, is_kind
 from standoff.cad.pieces import BoundaryPieces, PartRefusal, pieces_of
-from standoff.cad.seams import without_seams
+from standoff.cad.seams import without_corners, without_seams
 from standoff.cad.surfaces import kind_of
 from standoff.cad.tolerances import FILE_AREA, FILE_SLACK, LEAST_FACE, MOST_ACCURACY, SEWN_AT_LEAST
 from standoff.errors import BodyError, StandoffError
@@ -80,7 +80,7 @@ def made_part(
             name, _kinds(shape), healed=told, tolerance=tolerance_of(shape), accuracy=accuracy
         )
         try:
-            made, report, solid = _made(shape, report, most)
+            made, report, solid = _made_smooth(shape, report, most)
         except (StandoffError, RuntimeError) as error:
             made, solid = None, None
             report = replace(report, refused=str(error))
@@ -99,12 +99,36 @@ def _kinds(shape: Any) -> dict[str, int]:
     return dict(Counter(kind_of(face) for face in explored(shape, "face")))
 
 
-def _made(
+def _made_smooth(
     shape: Any, report: PartReport, most: float | None
 ) -> tuple[Boundary | Body, PartReport, Solid | None]:
+    """A part; where it is refused, or an edge or a face has a corner inside, once more with its
+    edges and faces divided where they are not smooth."""
+    from standoff.solids.spatial.corners import CornerError
+
+    try:
+        return _made(shape, report, most)
+    except (CornerError, PartRefusal) as error:
+        divided, numbers = without_corners(shape)
+        if divided.IsSame(shape):
+            raise
+        try:
+            made, report, solid = _made(divided, report, most, numbers)
+        except PartRefusal:
+            raise error from None
+        note = "edges and faces with corners inside were divided there"
+        return made, replace(report, notes=(*report.notes, note)), solid
+
+
+def _made(
+    shape: Any, report: PartReport, most: float | None, of: Sequence[int] = ()
+) -> tuple[Boundary | Body, PartReport, Solid | None]:
+    """of: of a divided shape the numbers of the faces of which its own are parts."""
     size = size_of(shape)
     _check(shape, size)
     solid, cut, numbers = without_seams(shape)
+    if of:
+        numbers = [of[number - 1] for number in numbers]
     pieces = pieces_of(solid, size, shape, numbers)
     claimed = max(FILE_SLACK * report.tolerance, min(report.accuracy, MOST_ACCURACY * size))
     allowed = max(claimed if most is None else most, JOIN_TOLERANCE * size)

@@ -44,6 +44,23 @@ def without_seams(solid: Any) -> tuple[Any, int, list[int]]:
     return _mended(solid, context.Apply(solid)), len(closed), numbers
 
 
+def without_corners(solid: Any) -> tuple[Any, list[int]]:
+    """The solid with edges and faces divided by OpenCASCADE where their curves and surfaces are not
+    C1, and of which of its faces, counted from 1, those of the result are parts."""
+    from OCP.GeomAbs import GeomAbs_C1
+    from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideContinuity
+
+    divider = ShapeUpgrade_ShapeDivideContinuity(solid)
+    divider.SetBoundaryCriterion(GeomAbs_C1)
+    divider.SetPCurveCriterion(GeomAbs_C1)
+    divider.SetSurfaceCriterion(GeomAbs_C1)
+    divider.Perform()
+    context = divider.GetContext()
+    faces = enumerate(explored(solid, "face"), 1)
+    numbers = [n for n, face in faces for _ in explored(context.Apply(face), "face")]
+    return cast("solid", divider.Result()), numbers
+
+
 def _mended(solid: Any, divided: Any) -> Any:
     """The divided solid as one that OpenCASCADE's check finds to be right, if that found the whole
     one so: next to a tube that ends at its seam the divider leaves an edge's trimming curve on the

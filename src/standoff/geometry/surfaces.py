@@ -126,11 +126,15 @@ class Surface(KeepsReadOnly, ABC):
         """(x, x_u, x_v, x_uu, x_uv, x_vv), each (3,), body frame."""
         return tuple(np.array(c) for c in surface_jet(self.reals, self.kind, 0, u, v))
 
-    def points(self, parameters: Array) -> Array:
-        """(n, 3) points at (n, 2) parameters, body frame."""
+    def jets(self, parameters: Array) -> Array:
+        """(n, 6, 3) rows (x, x_u, x_v, x_uu, x_uv, x_vv) at (n, 2) parameters, body frame."""
         found = np.empty((len(parameters), 18))
         surface_jets(self.reals, self.kind, 0, np.ascontiguousarray(parameters), found)
-        return found[:, :3]
+        return found.reshape(-1, 6, 3)
+
+    def points(self, parameters: Array) -> Array:
+        """(n, 3) points at (n, 2) parameters, body frame."""
+        return self.jets(parameters)[:, 0]
 
     def transformed(self, linear: Array, shift: Array) -> Self:
         """The exact image under x -> linear x + shift; parameters stay the same."""

@@ -51,6 +51,9 @@ LOOKS: Final = (3e-2, 3e-3, 3e-4, 3e-5)
 sought."""
 BALL_STEPS: Final = (1.0, 0.3, 0.1)
 """Of a place's depth: the same from its points, where no larger ball was found."""
+BESIDE_KNOT: Final = 1e-9
+"""Of a span: how far from a knot tangents and normals on its two sides are compared; they turn by
+some radians over a span."""
 SAME_SPOT: Final = 1e-5
 """Of the size: nearest points of one solid nearer to each other than this are one."""
 CUSP: Final = 1e-6

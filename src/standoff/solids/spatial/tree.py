@@ -14,6 +14,7 @@ from standoff.geometry.patch_bounds import between
 from standoff.kernels.solids import spatial_layout as S
 from standoff.kernels.solids.torus_potential import TORUS_THROUGH
 from standoff.solids.spatial.analytic import natural_of
+from standoff.solids.spatial.corners import check_corners, check_creases
 from standoff.solids.spatial.edge_kinds import proven_kinds, sampled_edges
 from standoff.solids.spatial.leaves import (
     Leaf,
@@ -52,10 +53,12 @@ def all_leaves(boundary: Boundary) -> tuple[list[Leaf], list[CoedgePiece], tuple
         for number, chart in charts.items()
         for leaf in face_leaves(boundary, chart, pieces, own[number], boundary.size)
     ]
+    check_creases({number: (chart.face, chart.surface) for number, chart in charts.items()}, found)
     columns = columns_of(pieces)
     kinds = proven_kinds(boundary, charts, pieces, columns)
     sampled = sampled_edges(kinds, boundary.edge_kinds)
     ranges = {k: parts_of_edge(boundary, k) for k in range(boundary.n_edges)}
+    check_corners({k: boundary.edge_parts[k].curve for k, parts in ranges.items() if parts})
     cones = edge_cones(charts, columns, ranges)
     round_faces = {}
     natural = {number: natural_of(chart) for number, chart in charts.items()}
