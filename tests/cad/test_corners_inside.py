@@ -88,7 +88,7 @@ def test_a_prism_over_one_polyline_is_divided() -> None:
 
 
 def test_every_solid_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
-    """All sharp edges, and all faces with their leaves; along smooth edges faces have the points."""
+    """All sharp edges, and all faces with their leaves; faces have the points at smooth ones."""
     edges: dict[int, Any] = {}
     faces: dict[int, Any] = {}
     monkeypatch.setattr(tree, "check_corners", edges.update)
