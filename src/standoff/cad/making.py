@@ -109,12 +109,12 @@ def _made_smooth(
     try:
         return _made(shape, report, most)
     except (CornerError, PartRefusal) as error:
-        divided, numbers = without_corners(shape)
-        if divided.IsSame(shape):
+        divided = without_corners(shape)
+        if divided is None:
             raise
         try:
-            made, report, solid = _made(divided, report, most, numbers)
-        except PartRefusal:
+            made, report, solid = _made(divided[0], report, most, divided[1])
+        except (CornerError, PartRefusal):
             raise error from None
         note = "edges and faces with corners inside were divided there"
         return made, replace(report, notes=(*report.notes, note)), solid

@@ -44,9 +44,10 @@ def without_seams(solid: Any) -> tuple[Any, int, list[int]]:
     return _mended(solid, context.Apply(solid)), len(closed), numbers
 
 
-def without_corners(solid: Any) -> tuple[Any, list[int]]:
+def without_corners(solid: Any) -> tuple[Any, list[int]] | None:
     """The solid with edges and faces divided by OpenCASCADE where their curves and surfaces are not
-    C1, and of which of its faces, counted from 1, those of the result are parts."""
+    C1, and of which of its faces, counted from 1, those of the result are parts; None where nothing
+    is divided, or what comes of it is no solid."""
     from OCP.GeomAbs import GeomAbs_C1
     from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideContinuity
 
@@ -55,10 +56,13 @@ def without_corners(solid: Any) -> tuple[Any, list[int]]:
     divider.SetPCurveCriterion(GeomAbs_C1)
     divider.SetSurfaceCriterion(GeomAbs_C1)
     divider.Perform()
+    result = divider.Result()
+    if result.ShapeType() != solid.ShapeType() or result.IsSame(solid):
+        return None
     context = divider.GetContext()
     faces = enumerate(explored(solid, "face"), 1)
     numbers = [n for n, face in faces for _ in explored(context.Apply(face), "face")]
-    return cast("solid", divider.Result()), numbers
+    return cast("solid", result), numbers
 
 
 def _mended(solid: Any, divided: Any) -> Any:
