@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -95,3 +96,24 @@ def test_every_solid_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tree, "check_creases", lambda charts, leaves: faces.update(charts))
     so.solids.Solid(so.shapes.box((1.0, 2.0, 3.0)))
     assert (len(edges), len(faces)) == (12, 6)
+
+
+def test_roundoff_beside_a_pole_is_no_crease() -> None:
+    """As on a rounding of a part of an assembly, far from its origin: normals at a pole
+    are products of a tangent and of next to nothing."""
+    across = np.linspace(0.0, np.pi / 2, 7)
+    rings = [np.array([np.cos(a), 0.0, np.sin(a)]) for a in across[:-1]]
+    turns = [
+        np.array([[np.cos(t), -np.sin(t), 0.0], [np.sin(t), np.cos(t), 0.0], UP])
+        for t in (0, 0.3, 0.7, 1.1, 1.4)
+    ]
+    net = np.array([[turn @ ring for turn in turns] for ring in rings] + [[UP] * len(turns)])
+    knots = [[0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4], [0, 0, 0, 0, 0.5, 1, 1, 1, 1]]
+    surface = NurbsSurface(net + [3e3, -2e3, 1e3], *knots)
+    ends = 4.0 - np.array([4.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
+    leaves: Any = [
+        SimpleNamespace(dim=2, chart=0, reals=np.array([a, b, *side]))
+        for a, b in pairwise(ends)
+        for side in ((0.0, 0.5), (0.5, 1.0))
+    ]
+    check_creases({0: (3, surface)}, leaves)

@@ -6,7 +6,7 @@ point at a corner that is no vertex, nor at a crease that is no edge.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from standoff.errors import BodyError
 from standoff.geometry.curves import Curve
 from standoff.geometry.surfaces import Surface
 from standoff.solids.spatial.leaves import Leaf
-from standoff.solids.spatial.tolerances import BESIDE_KNOT
+from standoff.solids.spatial.tolerances import BESIDE_KNOT, TANGENT_ROUNDOFF
 from standoff.typing import Array, Bools
 
 ACROSS = np.array([0.0, 0.19, 0.43, 0.71, 1.0])
@@ -33,9 +33,10 @@ def check_corners(curves: Mapping[int, Curve]) -> None:
         if len(spans) < 3:
             continue
         steps = BESIDE_KNOT * np.diff(spans)
-        before = curve.jets(spans[1:-1] - steps[:-1])[:, 1]
-        after = curve.jets(spans[1:-1] + steps[1:])[:, 1]
-        turned = np.flatnonzero(_turned(before, after))
+        before = curve.jets(spans[1:-1] - steps[:-1])
+        after = curve.jets(spans[1:-1] + steps[1:])
+        noise = _tangent_noise(before, np.diff(spans).min())
+        turned = np.flatnonzero(_turned(before[:, 1], after[:, 1], noise))
         if len(turned):
             t = float(spans[1 + turned[0]])
             x, y, z = curve.point(t)
@@ -66,14 +67,20 @@ def _check_crease(face: int, surface: Surface, own: Array, along: int, knot: flo
         return
     ends = sides[0][:, 1 - along]
     across = (ends[:, :1] + ACROSS * np.diff(ends, axis=1)).ravel()
-    normals = []
+    spans = [float(np.diff([low, *inner, high]).min()) for (low, high), inner in _sides_of(surface)]
+    normals, noise = [], np.zeros(len(across))
     for way, side in zip((-1.0, 1.0), sides, strict=True):
         at = np.empty((len(across), 2))
         width = float(np.diff(side[:, along], axis=1).max())
         at[:, along], at[:, 1 - along] = knot + way * BESIDE_KNOT * width, across
         jets = surface.jets(at)
+        tangents = np.linalg.norm(jets[:, 1:3], axis=2)
         normals.append(np.cross(jets[:, 1], jets[:, 2]))
-    turned = np.flatnonzero(_turned(*normals))
+        # a product of tangents, each with its own roundoff: much beside a pole
+        errors = [_tangent_noise(jets, span) for span in spans]
+        both = errors[0] * tangents[:, 1] + errors[1] * tangents[:, 0]
+        noise = np.maximum(noise, both)
+    turned = np.flatnonzero(_turned(normals[0], normals[1], noise))
     if len(turned):
         name, other = ("u", "v") if along == 0 else ("v", "u")
         raise CornerError(
@@ -83,9 +90,24 @@ def _check_crease(face: int, surface: Surface, own: Array, along: int, knot: flo
         )
 
 
-def _turned(before: Array, after: Array) -> Bools:
-    """Do vectors (n, 3) differ in direction?"""
-    sizes = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+def _sides_of(surface: Surface) -> Iterator[tuple[tuple[float, float], Sequence[float]]]:
+    """Of u, then of v: the ends of the domain, and the knots between them."""
+    u0, u1, v0, v1 = surface.domain
+    return zip(((u0, u1), (v0, v1)), surface.breaks(), strict=True)
+
+
+def _tangent_noise(jets: Array, span: float) -> Array:
+    """What roundoff may change tangents by, in their own unit: differences of points, over a span
+    of parameters."""
+    noise: Array = TANGENT_ROUNDOFF * np.abs(jets[:, 0]).max(axis=1) / span
+    return noise
+
+
+def _turned(before: Array, after: Array, noise: Array) -> Bools:
+    """Do vectors (n, 3), each within its noise, differ in direction?"""
+    lengths = np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1)
+    sizes = lengths[0] * lengths[1]
     sine = np.linalg.norm(np.cross(before, after), axis=1)
-    turned: Bools = (sine > SMOOTH_ANGLE * sizes) | ((before * after).sum(axis=1) < 0.0)
+    doubt = noise * (lengths[0] + lengths[1])
+    turned: Bools = (sine > SMOOTH_ANGLE * sizes + doubt) | ((before * after).sum(axis=1) < -doubt)
     return turned

@@ -54,6 +54,9 @@ BALL_STEPS: Final = (1.0, 0.3, 0.1)
 BESIDE_KNOT: Final = 1e-9
 """Of a span: how far from a knot tangents and normals on its two sides are compared; they turn by
 some radians over a span."""
+TANGENT_ROUNDOFF: Final = 1e-14
+"""Of a point's coordinates, over a span of parameters: what roundoff may change a tangent by there,
+some 50 roundoffs."""
 SAME_SPOT: Final = 1e-5
 """Of the size: nearest points of one solid nearer to each other than this are one."""
 CUSP: Final = 1e-6
