@@ -109,7 +109,7 @@ def test_roundoff_beside_a_pole_is_no_crease() -> None:
     ]
     net = np.array([[turn @ ring for turn in turns] for ring in rings] + [[UP] * len(turns)])
     knots = [[0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4], [0, 0, 0, 0, 0.5, 0.5, 1, 1, 1, 1]]
-    surface = NurbsSurface(net + [300.0, -200.0, 100.0], *knots)
+    surface = NurbsSurface(net + np.array([300.0, -200.0, 100.0]), *knots)
     ends = 4.0 - np.array([4.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
     leaves: Any = [
         SimpleNamespace(dim=2, chart=0, reals=np.array([a, b, *side]))

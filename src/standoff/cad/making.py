@@ -212,9 +212,12 @@ def _in_file(told: str, pieces: BoundaryPieces) -> str:
 def _not_crossing(boundary: Boundary, pieces: BoundaryPieces) -> Solid:
     """The solid of a boundary; raises Refused if it crosses itself."""
     from standoff.solids import SelfIntersections, Solid
+    from standoff.solids.spatial.corners import CornerError
 
     try:
         return Solid(boundary)
+    except CornerError as error:
+        raise CornerError(_in_file(str(error), pieces), part=error.part) from error
     except StandoffError as error:
         if not isinstance(error.value, SelfIntersections):
             raise
